@@ -14,12 +14,12 @@ from check_support import Stop, main, report
 from page_sources import TABLE, WRITTEN, Fault
 
 NAMED = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"(?:[^"\n]*/)?([^"/\n]+)"|^[ \t]*(?:from|import)[ \t]+\.?([\w.]+)', re.M)
-LINK = re.compile(r"\]\(([^)\s:#]+)(?:#[^)\s]*)?\)")
+LINK = re.compile(r"\]\(([^)\s:]+)\)")
 IMPLEMENTED = (".c", ".cpp")
 PRODUCT = ("lib", "firmware", "hal", "nav", "sim", "host_tests")
 PAGES = ("docs", "second", "tools", "checks", "campaigns", "mk")
 # what writes a page, draws it, launches a program or says what is wrong with it makes no number
-NO_NUMBER = {"page.py", "page_sources.py", "results.py", "page_benchmarks.py", "page_faults.py", "robust_pictures.py", "look.py", "launched.py",
+NO_NUMBER = {"page_sources.py", "results.py", "pictures.py", "page_benchmarks.py", "page_faults.py", "robust_pictures.py", "look.py", "launched.py",
              "port.py", "errors.py", "unity_line.py"}
 NIGHT = pathlib.Path("docs/results/nightly.md")  # of make nightly: a commit in each row
 RESULTS = pathlib.Path("docs/results")
@@ -73,13 +73,25 @@ def unlisted(rows):
             yield f"{path}: no line 'Written by `make ...`'"
 
 
+def anchors(page):
+    """The headings of a page as GitHub links to them."""
+    seen, found = {}, set()
+    for heading in re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.M):
+        anchor = re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+        found.add(f"{anchor}-{seen[anchor]}" if anchor in seen else anchor)
+        seen[anchor] = seen.get(anchor, 0) + 1
+    return found
+
+
 def broken_links():
-    """Links from one file of the tree to another that is not there."""
+    """Links from one page of the tree to a file, or to a heading of a page, that is not there."""
     places = ("*.md", *(f"{folder}/**/*.md" for folder in (*PRODUCT, *PAGES)))
     for page in (page for place in places for page in sorted(pathlib.Path(".").glob(place))):
         for link in LINK.findall(page.read_text(encoding="utf-8")):
-            if not (page.parent / link).exists():
-                yield f"{page}: a link to {link}, which is not there"
+            name, _, anchor = link.partition("#")
+            file = page.parent / name if name else page
+            if not file.exists() or (anchor and file.suffix == ".md" and anchor not in anchors(file)):
+                yield f"{page}: a link to {link}, which leads nowhere"
 
 
 def changed(page, row, held, files):

@@ -73,9 +73,6 @@ OPTIMISED := $(addprefix $(H)/,native_replay recordings default_filter)
 $(OPTIMISED): $(ARCHIVES_O2)
 	@$(HOST_CC) $(call linked,$^) -lm -o $@
 
-$(H)/roll_replay: $(H)/o2/host_tests/tools/campaigns/roll_replay.o $(H)/o2/libfilters.a
-	@$(HOST_CC) $^ -lm -o $@
-
 $(H)/pipeline_replay: $(H)/o2/host_tests/system/pipeline_replay.o $(ARCHIVES_O2)
 	@$(HOST_CC) -Wl,--wrap=choice_begin,--wrap=filter_noise_r_lsb2_q8 $(call linked,$^) -lm -o $@
 

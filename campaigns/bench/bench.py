@@ -1,10 +1,10 @@
 """make bench: runs the images of the benchmark in the simulator, judges the numbers, writes build/bench.json and docs/results/benchmarks.md."""
 import argparse
+import concurrent.futures
 import json
 import pathlib
 import re
 import statistics
-import subprocess
 import sys
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
@@ -15,8 +15,9 @@ import images
 import laws
 import page_benchmarks
 import page_sources
-from bench_firmware import COMPILER, DOCUMENT, OUT, SIMRUN, Fault, image_size, measure_rest, measure_sample, run
-from results import section
+from bench_firmware import COMPILER, OUT, SIMRUN, Fault, image_size, measure_rest, measure_sample, printed, run
+from page_benchmarks import CALLS, DOCUMENT
+from results import cells, markdown, run_as_program
 
 JSON = pathlib.Path("build/bench.json")
 
@@ -76,19 +77,9 @@ def summarise(sections):
 
 
 def measure(images):
-    """Each image in the simulator, side by side; status 8 is how its program ends."""
-    running = []
-    for image in images:
-        text = image.with_suffix(".txt")
-        command = [SIMRUN, "--fw", image, "--in", "sim/streams/tilt-fast.csv", "--out", text, "--max-ms", "300000"]
-        running.append((subprocess.Popen([str(c) for c in command], stderr=subprocess.PIPE, text=True), text))
-    results = []
-    for process, text in running:
-        _, told = process.communicate(timeout=1200)
-        if process.returncode != 8:
-            raise Fault(f"{text.stem}: simrun gave status {process.returncode}: {told.strip().splitlines()[-1]}")
-        results.append(parse(text.read_text(encoding="ascii"), text.stem))
-    return results
+    """The results of each image, two at a time."""
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        return [parse(text, image.stem) for image, text in zip(images, pool.map(printed, images))]
 
 
 def measure_where():
@@ -96,20 +87,20 @@ def measure_where():
     profile = OUT / "bench_where.csv"
     run([SIMRUN, "--fw", images.image_with(bench_where.FILTER), "--in", f"sim/streams/{bench_where.STREAM}.csv",
          "--out", OUT / "bench_where.txt", "--filter", bench_where.FILTER, "--profile", profile])
-    try:
-        return bench_where.page_lines(bench_where.parts(*bench_where.read_profile(profile)))
-    except LookupError as problem:
-        raise Fault(str(problem)) from None
+    return bench_where.page_lines(bench_where.parts(*bench_where.read_profile(profile)))
 
 
 # --- sizes ---
 
+def preprocessed(flags, source):
+    return run(["avr-gcc", *flags, "-E", "-P", "-x", "c", "-"], source)
+
+
 def filters_of(flags):
     source = '#include "filter_list.h"\n#define NAME(F) @F@\nFILTER_LIST(NAME)\n'
-    done = subprocess.run(["avr-gcc", *flags, "-E", "-P", "-x", "c", "-"], input=source, capture_output=True, text=True, timeout=60)
-    names = re.findall(r"@ *(\w+) *@", done.stdout)
-    if done.returncode != 0 or not names:
-        raise Fault(f"cannot read the list of filters: {done.stderr.strip()}")
+    names = re.findall(r"@ *(\w+) *@", preprocessed(flags, source))
+    if not names:
+        raise Fault("cannot read the list of filters")
     return names
 
 
@@ -117,12 +108,11 @@ def declared_of(flags, filters):
     """{name: worst case in cycles that the code declares}: the filters, sample_rest and row."""
     source = '#include "settings/settings.h"\n'
     source += "sample_rest_worst_cycles = SETTINGS_REST_CYCLES\nrow_worst_cycles = SETTINGS_ROW_CYCLES\n"
-    done = subprocess.run(["avr-gcc", *flags, "-E", "-P", "-x", "c", "-"], input=source, capture_output=True, text=True, timeout=60)
     found = laws.worst_cycles()
-    found |= {name: int(value) for name, value in re.findall(r"\b(\w+)_worst_cycles = (\d+)u?\b", done.stdout)}
+    found |= {name: int(value) for name, value in re.findall(r"\b(\w+)_worst_cycles = (\d+)u?\b", preprocessed(flags, source))}
     missed = [name for name in [*filters, "sample_rest", "row"] if name not in found]
-    if done.returncode != 0 or missed:
-        raise Fault(f"{missed[0] if missed else 'settings.h'}: declares no worst case")
+    if missed:
+        raise Fault(f"{missed[0]}: declares no worst case")
     return found
 
 
@@ -215,33 +205,24 @@ def agreement_faults(filters, rms):
 
 def table(rows):
     """Markdown lines."""
-    head = ["name", "min", *COLUMNS[:2], "worst seen in", *COLUMNS[2:4], "of it shared", *COLUMNS[4:], "float / ours, median", "worst"]
-    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    lines = []
     for name, row in rows.items():
         yardstick, ours = (row, rows[laws.LIGHT]) if name == KEPT else (rows.get(f"float_{name}"), row)
         ratios = [f"{yardstick[k] / ours[k]:.1f}" if yardstick else "" for k in ("median", "worst")]
-        cells = [f"`{name}`", row["min"], row["median"], row["worst"], row["where"], row.get("worst_small", ""), row.get("flash", ""),
-                 row.get("shared", ""), row.get("ram", ""), row.get("stack", ""), *ratios]
-        lines.append("| " + " | ".join(f"{c:,}" if isinstance(c, int) else c for c in cells) + " |")
-    return lines
+        keys = ("min", "median", "worst", "where", "worst_small", "flash", "shared", "ram", "stack")
+        lines.append([f"`{name}`", *(row.get(key) for key in keys), *ratios])
+    head = ["name", "min", *COLUMNS[:2], "worst seen in", *COLUMNS[2:4], "of it shared", *COLUMNS[4:], "float / ours, median", "worst"]
+    return markdown(head, lines)
 
 
 def read_table(text):
     """{name: {column: number}} of the calls' table of a page; empty if it has none."""
-    lines = [line for line in section(text, page_benchmarks.CALLS) if line.startswith("|")]
-    if not lines:
-        return {}
-    head = [cell.strip() for cell in lines[0].strip("|").split("|")]
-    result = {}
-    for line in lines[2:]:
-        cells = [cell.strip() for cell in line.strip("|").split("|")]
-        numbers = {}
-        for column in COLUMNS:
-            digits = cells[head.index(column)].replace(",", "")
-            if digits.isdigit():
-                numbers[column] = int(digits)
-        result[cells[0].strip("`")] = numbers
-    return result
+    found = {}
+    for title, name, column, cell in cells(text):
+        digits = cell.replace(",", "")
+        if title == CALLS and column in COLUMNS and digits.isdigit():
+            found.setdefault(name.strip("`"), {}).setdefault(column, int(digits))
+    return found
 
 
 def regressions(old, new):
@@ -258,11 +239,6 @@ def regressions(old, new):
             if now is None or now > before * (1.0 + REGRESSION):
                 faults.append(f"{name}: {column} {before} before, {now} now")
     return faults
-
-
-def committed_page():
-    done = subprocess.run(["git", "show", f"HEAD:{DOCUMENT}"], capture_output=True, text=True, timeout=60)
-    return done.stdout if done.returncode == 0 else ""
 
 
 def bench_json(rows):
@@ -322,9 +298,9 @@ def main():
     lines = table(rows)
     print("\n".join([*lines, "", *bench_peers.table(peers), *bench_peers.said_of(absent, arguments.peers)]))
     JSON.write_text(json.dumps(bench_json(rows) + bench_peers.json_rows(peers), indent=1) + "\n", encoding="ascii")
-    new = read_table("\n".join(["", f"## {page_benchmarks.CALLS}", *lines]))
+    new = read_table("\n".join([f"## {CALLS}", *lines]))
     faults = limit_faults(filters, rows, rms) + declared_faults(declared_of(arguments.flags.split(), filters), rows)
-    faults += regressions(read_table(committed_page()), new)
+    faults += regressions(read_table(page_benchmarks.PAGE.before()), new)
     version = run(["avr-gcc", "-dumpversion"]).strip()
     if version != COMPILER:
         print(f"bench: avr-gcc {version}: reported only, the limits and {DOCUMENT} are for {COMPILER}")
@@ -339,8 +315,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except (Fault, OSError, subprocess.TimeoutExpired) as problem:
-        print(f"bench: {problem}", file=sys.stderr)
-        sys.exit(2)
+    run_as_program("bench", main)

@@ -3,12 +3,12 @@ import csv
 import json
 import pathlib
 import statistics
-import subprocess
+
 from laws import LIGHT
+from results import Fault, output_of as run
 
 SIMRUN = "build/sim/simrun"
 OUT = pathlib.Path("build/uno")
-DOCUMENT = pathlib.Path("docs/results/benchmarks.md")
 COMPILER = "5.4.0"  # the limits are for Debian's avr-gcc; elsewhere the numbers are only reported
 
 # The firmware's own way of a sample: stream, options of simrun
@@ -26,23 +26,18 @@ CPU_HZ = 16000000
 NOISE_SAMPLES = 16
 
 
-class Fault(Exception):
-    """One sentence about what is wrong."""
-
-
-def run(command, statuses=(0,)):
-    command = [str(c) for c in command]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
-    if done.returncode not in statuses:
-        raise Fault(f"{command[0]} gave status {done.returncode}: {(done.stderr or done.stdout).strip()}")
-    return done.stdout
-
-
 def image_size(elf):
     """Flash and RAM bytes."""
     sizes = {w[0]: int(w[1]) for w in (line.split() for line in run(["avr-size", "-A", elf]).splitlines()) if len(w) == 3 and w[1].isdigit()}
     data = sizes.get(".data", 0)
     return sizes.get(".text", 0) + data, data + sizes.get(".bss", 0) + sizes.get(".noinit", 0)
+
+
+def printed(image):
+    """What a program for the chip prints in the simulator; status 8 is how it ends."""
+    text = image.with_suffix(".txt")
+    run([SIMRUN, "--fw", image, "--in", "sim/streams/tilt-fast.csv", "--out", text, "--max-ms", "300000"], statuses=(8,))
+    return text.read_text(encoding="ascii")
 
 
 def measure_sample():

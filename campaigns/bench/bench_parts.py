@@ -11,7 +11,6 @@ import functools
 import json
 import math
 import pathlib
-import subprocess
 import sys
 from typing import NamedTuple
 
@@ -19,6 +18,7 @@ sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import laws
 from bench_firmware import COMPILER, CPU_HZ, OUT, SIMRUN, Fault, run
 from images import FW
+from results import markdown, run_as_program
 
 LIMITS = pathlib.Path("campaigns/bench/cycles_by_part.txt")
 JSON = pathlib.Path("build/cycles_by_part.json")
@@ -116,9 +116,8 @@ def nobody(functions):
 
 def in_line(pcs):
     """{pc: functions of the source that are there, the outermost first}; none where there is no line information."""
-    done = subprocess.run(["avr-addr2line", "-f", "-i", "-a", "-e", FW], input="\n".join(pcs), capture_output=True, text=True, timeout=60)
     found = {}
-    for line in done.stdout.splitlines():
+    for line in run(["avr-addr2line", "-f", "-i", "-a", "-e", FW], "\n".join(pcs)).splitlines():
         if line.startswith("0x"):
             lines = found.setdefault(int(line, 16), [])
         else:
@@ -275,10 +274,9 @@ def table(results):
     """Markdown lines."""
     head = ["cycles a sample", *(f"`{case.filter_name()}`, {case.rate_hz} Hz, {ROWS[case.every]}" for case in results)]
     parts = sorted(part_names()[:-1], key=lambda part: -max(m.parts.get(part, 0) for m in results.values()))
-    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
-    lines += ["| " + " | ".join([part, *(f"{m.parts.get(part, 0):,.0f}" for m in results.values())]) + " |" for part in [*parts, REST]]
-    lines.append("| " + " | ".join(["together", *(f"{sum(m.parts.values()):,.0f}" for m in results.values())]) + " |")
-    return [*lines, "| " + " | ".join(["of the processor's time", *(f"{m.load:.1%}" for m in results.values())]) + " |"]
+    lines = [[part, *(f"{m.parts.get(part, 0):,.0f}" for m in results.values())] for part in [*parts, REST]]
+    return markdown(head, [*lines, ["together", *(f"{sum(m.parts.values()):,.0f}" for m in results.values())],
+                           ["of the processor's time", *(f"{m.load:.1%}" for m in results.values())]])
 
 
 def json_rows(results):
@@ -326,8 +324,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except (Fault, OSError, subprocess.TimeoutExpired) as problem:
-        print(f"cycles: {problem}", file=sys.stderr)
-        sys.exit(2)
+    run_as_program("cycles", main)

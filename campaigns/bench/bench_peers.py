@@ -9,7 +9,8 @@ import struct
 from typing import NamedTuple
 
 import laws
-from bench_firmware import OUT, SIMRUN, Fault, image_size, run
+from bench_firmware import OUT, Fault, image_size, printed, run
+from results import markdown
 
 FOLDER = OUT / "bench_peers"
 STREAM = pathlib.Path("sim/streams/outliers-15pct.csv")
@@ -152,9 +153,7 @@ def row_of(pairs, truth):
 
 
 def simulated(subject, image, truth):
-    text = image.with_suffix(".txt")
-    run([SIMRUN, "--fw", image, "--in", "sim/streams/tilt-fast.csv", "--out", text, "--max-ms", "300000"], statuses=(8,))
-    return row_of(parse(text.read_text(encoding="ascii"), subject.name, len(truth)), truth)
+    return row_of(parse(printed(image), subject.name, len(truth)), truth)
 
 
 def measure(flags, sources, peers):
@@ -178,12 +177,10 @@ def measure(flags, sources, peers):
 
 def table(rows):
     """Markdown lines, the best error first."""
-    head = ["filter", "what it is", "min", "median", "worst", "flash", "RAM", "error, LSB rms"]
-    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
-    for row in sorted(rows.values(), key=lambda row: row["error"]):
-        numbers = [f"{row[key]:,}" if key in row else "" for key in ("min", "median", "worst", "flash", "ram")]
-        lines.append("| " + " | ".join([row["label"], row["words"], *numbers, f"{row['error']:.2f}"]) + " |")
-    return lines
+    keys = ("min", "median", "worst", "flash", "ram")
+    return markdown(["filter", "what it is", *keys[:4], "RAM", "error, LSB rms"],
+                    [[row["label"], row["words"], *(row.get(key) for key in keys), f"{row['error']:.2f}"]
+                     for row in sorted(rows.values(), key=lambda row: row["error"])])
 
 
 def json_rows(rows):

@@ -3,6 +3,7 @@ import collections
 import csv
 
 from laws import SLOWEST
+from results import Fault, markdown
 
 FILTER = SLOWEST
 STREAM = "outliers-15pct"
@@ -45,7 +46,7 @@ def parts(cycles, calls):
     updates = calls.get(ENTRY, 0)
     missing = [function for function in FUNCTIONS if function not in cycles]
     if updates == 0 or missing:
-        raise LookupError(f"{', '.join(missing) or ENTRY} is not in the profile of {STREAM}: renamed, or now in line of its caller")
+        raise Fault(f"{', '.join(missing) or ENTRY} is not in the profile of {STREAM}: renamed, or now in line of its caller")
     result = []
     for function, words in FUNCTIONS.items():
         share = cycles[function] / updates
@@ -57,6 +58,6 @@ def parts(cycles, calls):
 
 
 def page_lines(found):
-    lines = [f"| `{FILTER}`, {STREAM}, cycles per sample and axis, mean | |", "|---|---|"]
-    lines += [f"| {words} | {share:,.0f} |" for words, share in sorted(found, key=lambda part: -part[1])]
-    return lines + [f"| together | {sum(share for _, share in found):,.0f} |"]
+    parts_and_sum = [*sorted(found, key=lambda part: -part[1]), ("together", sum(share for _, share in found))]
+    rows = [[words, f"{share:,.0f}"] for words, share in parts_and_sum]
+    return [f"| `{FILTER}`, {STREAM}, cycles per sample and axis, mean | |", *markdown(["", ""], rows)[1:]]

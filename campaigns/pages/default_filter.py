@@ -4,7 +4,6 @@ says so, and leaves the page as it is."""
 import dataclasses
 import json
 import pathlib
-import subprocess
 import sys
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
@@ -13,8 +12,7 @@ import default_score as score
 import default_streams as streams
 from default_score import CANDIDATE, CONTENTION, NOT_JUDGED, OWN
 from default_streams import BAD_READS, BURSTS, CLASSES, MOTIONS, OUTLIERS, RATES_HZ
-from page import Fault, run_as_program
-from results import FOLDER, Results, table
+from results import FOLDER, Results, output_of, run_as_program, table
 
 PROGRAM = "build/host/default_filter"
 JSON = pathlib.Path("build/default.json")
@@ -37,13 +35,7 @@ def told(message):
 
 def run_jobs(jobs):
     """What the program prints for some jobs."""
-    try:
-        done = subprocess.run([PROGRAM], input="".join(job.line() + "\n" for job in jobs), capture_output=True, text=True, timeout=600)
-    except FileNotFoundError as missing:
-        raise Fault(f"{PROGRAM} is not built: make default builds it") from missing
-    if done.returncode != 0:
-        raise Fault(done.stderr.strip() or f"{PROGRAM} gave status {done.returncode}")
-    return done.stdout
+    return output_of([PROGRAM], "".join(job.line() + "\n" for job in jobs))
 
 
 def run_all(jobs):
@@ -297,12 +289,7 @@ def main():
     if not real:
         print(f"skipped: 1 (no recordings in {streams.recordings_folder()}: shipped streams only, {PAGE.document} left as it is)")
         return 0
-    faults = PAGE.write(tables(t))
-    for fault in faults:
-        print(f"default: {fault}", file=sys.stderr)
-    print(f"default: {PAGE.document} written" + (f"; {len(faults)} numbers of the page before did not come out again" if faults else ""))
-    print("0 passed, 1 failed" if faults else "1 passed, 0 failed")
-    return 1 if faults else 0
+    return PAGE.publish(tables(t))
 
 
 if __name__ == "__main__":

@@ -5,8 +5,8 @@ from collections import defaultdict
 from dataclasses import dataclass
 
 from default_streams import BAD_READS, BURSTS, CLASSES, MOTIONS, OUTLIERS
-from page import Fault
 from laws import DEFAULT, PLAIN
+from results import Fault
 
 NOT_FILTERS = (f"median5_{PLAIN}", "ema", "median5_ema", "hampel7_ema", "one_euro", "raw")  # shown beside the list's, never chosen
 CANDIDATE, NONE_PASSES = DEFAULT, "none"

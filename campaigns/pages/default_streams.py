@@ -7,7 +7,7 @@ import pathlib
 from dataclasses import dataclass
 
 import make_streams
-from page import Fault
+from results import Fault
 
 RATES_HZ = (25, 50, 100, 200, 400, 800)
 FINE_HZ = 800              # streams that the sensor's own low pass would touch are made at this rate and averaged down

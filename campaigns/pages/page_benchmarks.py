@@ -1,9 +1,9 @@
 """docs/results/benchmarks.md: the tables of make bench as a page."""
 import page_sources
-from bench_firmware import DOCUMENT
 from laws import LIGHT
-from results import Results, section
+from results import FOLDER, Results, section
 
+DOCUMENT = FOLDER / "benchmarks.md"
 CALLS, PARTS, WHERE, PEERS = ("Filters, angles and rows", "Cycles of a sample, by part", "Cycles of the most expensive filter",
                               "Beside other people's filters")
 

@@ -10,8 +10,7 @@ import subprocess
 import sys
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-from page import Fault, run_as_program
-from results import Results, table
+from results import Fault, Results, output_of, run_as_program, table
 
 DOCUMENT = pathlib.Path("docs/results/navigation.md")
 JSON = pathlib.Path("build/nav.json")
@@ -48,8 +47,7 @@ def chip_rows(text, states):
 
 
 def flash_bytes(elf):
-    done = subprocess.run(["avr-size", "-A", elf], capture_output=True, text=True, check=True, timeout=60)
-    return sum(int(size) for size in re.findall(r"^\.(?:text|data)\s+(\d+)", done.stdout, re.M))
+    return sum(int(size) for size in re.findall(r"^\.(?:text|data)\s+(\d+)", output_of(["avr-size", "-A", elf]), re.M))
 
 
 def alone(states):

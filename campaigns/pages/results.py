@@ -3,10 +3,11 @@ that the committed page has otherwise is named."""
 import hashlib
 import pathlib
 import subprocess
+import sys
 import textwrap
 
 import page_sources
-from page import no_title_twice
+from page_sources import Fault
 
 FOLDER = pathlib.Path("docs/results")
 PICTURES = FOLDER / "pictures"
@@ -14,10 +15,37 @@ COLUMNS = 150
 KEPT = pathlib.Path("build/pages")  # where there is no git: pages as they were before a command wrote them
 
 
+def run_as_program(name, main):
+    """Ends the program with main's status; 2 and one sentence where it cannot do its work."""
+    try:
+        sys.exit(main())
+    except (Fault, OSError, subprocess.TimeoutExpired) as problem:
+        print(f"{name}: {problem}", file=sys.stderr)
+        sys.exit(2)
+
+
+def output_of(command, given=None, statuses=(0,)):
+    """What a program prints."""
+    command = [str(word) for word in command]
+    try:
+        done = subprocess.run(command, input=given, capture_output=True, text=True, timeout=1200)
+    except FileNotFoundError as missing:
+        raise Fault(f"{command[0]} is not built: the make target of this page builds it") from missing
+    if done.returncode not in statuses:
+        raise Fault(f"{command[0]} gave status {done.returncode}: {(done.stderr or done.stdout).strip()}")
+    return done.stdout
+
+
+def markdown(head, rows):
+    """The lines of a table; whole numbers with commas, None as an empty cell."""
+    shown = [[f"{cell:,}" if isinstance(cell, int) else cell or "" for cell in row] for row in rows]
+    return [f"| {' | '.join(head)} |", "|---" * len(head) + "|", *(f"| {' | '.join(row)} |" for row in shown)]
+
+
 def table(title, text, head, rows):
-    """The lines of one table; text, if there is any, stands above it."""
+    """A table under its title; text, if there is any, stands above it."""
     above = textwrap.wrap(text, COLUMNS, break_long_words=False, break_on_hyphens=False)
-    return [f"## {title}", *above, "", f"| {' | '.join(head)} |", "|---" * len(head) + "|", *(f"| {' | '.join(row)} |" for row in rows), ""]
+    return [f"## {title}", *above, "", *markdown(head, rows), ""]
 
 
 def cells(text):
@@ -52,6 +80,14 @@ def differences(old, new):
             for what, number in before.items() if after.get(what) != number]
 
 
+def no_title_twice(document, lines):
+    """Refuses tables of one title: a number is known by the title that it stands under, so one of them would be lost."""
+    titles = [line.lstrip("# ") for line in "\n".join(lines).splitlines() if line.startswith("#")]
+    for title in titles:
+        if titles.count(title) > 1:
+            raise Fault(f"{document}: the title '{title}' occurs {titles.count(title)} times")
+
+
 def digest(text):
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
@@ -60,7 +96,7 @@ class Results:
     """A page of docs/results: its title, the command that writes it, and what is measured."""
 
     def __init__(self, document, title, command, about):
-        self.document = document
+        self.document, self.command = document, command
         self.head = [f"# {title}", f"Written by `{command}`; do not edit it.", page_sources.line(page_sources.NONE), "", about.strip(), ""]
 
     def text(self, lines):
@@ -81,17 +117,12 @@ class Results:
 
     def before(self):
         """The committed page; without git, or where it is not committed, the one that lay there before this command wrote it."""
+        committed = page_sources.git("show", f"HEAD:./{self.document}").decode()
         text = self.held() if self.document.is_file() else ""
-        try:
-            done = subprocess.run(["git", "show", f"HEAD:./{self.document}"], capture_output=True, text=True, timeout=60)
-            if done.returncode == 0:
-                return done.stdout
-        except FileNotFoundError:
-            pass
         kept, written = self.kept()
         if kept.is_file() and written.is_file() and written.read_text(encoding="ascii") == digest(text):
-            return kept.read_text(encoding="utf-8")
-        return text
+            text = kept.read_text(encoding="utf-8")
+        return committed or text
 
     def kept(self):
         return KEPT / self.document.name, KEPT / f"{self.document.name}.written"
@@ -111,3 +142,15 @@ class Results:
         beside.write_text(new, encoding="utf-8")
         beside.replace(self.document)  # what ends the program meanwhile leaves the page before
         return differences(before, new)
+
+    def publish(self, lines, pictures=(), good=True):
+        """Writes the page and draws the pictures that show something else; names each number that did not come out again. The exit status, which
+        is 1 too where the measurement was not good."""
+        name, faults = self.command.removeprefix("make "), self.write(lines)
+        drawn = sum(picture.draw_if_stale() for picture in pictures)
+        for fault in faults:
+            print(f"{name}: {fault}", file=sys.stderr)
+        print(f"{name}: {self.document} written, {drawn} pictures drawn; {len(faults)} numbers of the page before did not come out again")
+        passed = good and not faults
+        print("1 passed, 0 failed" if passed else "0 passed, 1 failed")
+        return 0 if passed else 1

@@ -1,24 +1,16 @@
-#!/usr/bin/env python3
-"""Runs every filter over the shipped streams through the firmware's sample path and writes docs/results/robust-filters.md.
-
-    robust.py            writes the page and the pictures; a number of the committed page that does not come out again is named and makes the
-                         exit status 1
-    robust.py --check    compares page and pictures with a new run and writes nothing
-
-Nothing in a run is left to chance, so the page must equal it to the last digit. A picture holds the hash of what it shows.
-"""
-import argparse
+"""make robust: every filter over the shipped streams through the firmware's sample path, into docs/results/robust-filters.md and its pictures.
+Nothing in a run is left to chance, so the page must equal it to the last digit."""
 import pathlib
-import subprocess
 import sys
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-from results import FOLDER, PICTURES, Results, numbers_of, table
+from results import FOLDER, Results, run_as_program, table
 
 try:
+    import pictures
     import robust_pictures
     import robust_runs
-    from robust_runs import AXES, SHAKE_HZ, SHAKE_RATES_HZ, Fault, in_parallel, replay, scores, unfiltered
+    from robust_runs import AXES, SHAKE_HZ, SHAKE_RATES_HZ, in_parallel, replay, scores, unfiltered
 except ImportError as missing:
     sys.exit(f"robust: {missing.name} is missing: run `make robust`, or use a Python that has tools/deps/requirements.txt")
 
@@ -107,36 +99,11 @@ def measure():
     return [*stream_tables(streams, names, score), *changes_table(streams), *shake_table(names)], streams, runs
 
 
-# --- page -------------------------------------------------------------------------------------------------------------
-
-
-def page_lines(tables, pictures):
-    """The pictures, then the tables."""
-    return [line for picture in pictures for line in (f"![{picture.title}]({PICTURES.name}/{picture.path.name})", "")] + tables
-
-
-def main(arguments=None):
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="compare instead of writing")
-    options = parser.parse_args(arguments)
+def main():
     tables, streams, runs = measure()
-    pictures = robust_pictures.contents(streams, runs)
-    lines = page_lines(tables, pictures)
-    if options.check:
-        faults = PAGE.check(lines) + robust_pictures.stale(pictures)
-    else:
-        faults = PAGE.write(lines)
-        drawn = robust_pictures.draw_stale(pictures)
-        print(f"robust: {PAGE.document} written, {drawn} of {len(pictures)} pictures drawn")
-    for fault in faults:
-        print(f"robust: {fault}", file=sys.stderr)
-    print(f"robust: {len(numbers_of(PAGE.text(lines)))} numbers, {len(faults)} findings")
-    return 1 if faults else 0
+    shown = robust_pictures.contents(streams, runs)
+    return PAGE.publish(pictures.on_page(shown) + tables, shown)
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except (Fault, OSError, subprocess.TimeoutExpired) as problem:
-        print(f"robust: {problem}", file=sys.stderr)
-        sys.exit(2)
+    run_as_program("robust", main)

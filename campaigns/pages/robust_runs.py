@@ -1,14 +1,13 @@
 """Runs of the filters over streams by the firmware's own sample path on the PC (build/host/pipeline_replay), and what they are worth."""
 import pathlib
 import random
-import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 import make_streams
-from page import Fault
+from results import Fault, output_of
 
 REPLAY = "build/host/pipeline_replay"
 STREAMS = pathlib.Path("sim/streams")
@@ -44,17 +43,6 @@ class Run:
     angles_cdeg: np.ndarray  # rows x 2: roll, pitch
     mg: np.ndarray           # rows x 3
     flags: np.ndarray
-
-
-def output_of(command):
-    command = [str(c) for c in command]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=600)
-    except FileNotFoundError as missing:
-        raise Fault(f"{command[0]} is not built: make robust builds it") from missing
-    if done.returncode != 0:
-        raise Fault(done.stderr.strip() or f"{command[0]} gave status {done.returncode}")
-    return done.stdout
 
 
 def filters():

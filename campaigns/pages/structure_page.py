@@ -1,6 +1,5 @@
 """docs/results/variable-structure.md and its picture, from the experiments of campaigns/variable_structure with the seed and the runs of make
 papers. Fails with the name of each number that does not come out again."""
-import argparse
 import pathlib
 import sys
 
@@ -9,12 +8,11 @@ try:
     import structure_picture
     from variable_structure.experiments import EXPERIMENTS
     from variable_structure.intervals import Interval
-    from variable_structure.program import DEFAULT_RUNS, DEFAULT_SEED
+    from papers_program import DEFAULT_RUNS, DEFAULT_SEED
 except ImportError as missing:
     sys.exit(f"structure: {missing.name} is missing: run make structure, which installs it")
-from page import run_as_program
 from papers_page import shown
-from results import FOLDER, PICTURES, Results, table
+from results import FOLDER, PICTURES, Results, run_as_program, table
 
 ABOUT = f"""
 Which of three sensors a rule of [paper 004](../variable-structure.md) chooses for each window of 20 s, and what the estimate is worth:
@@ -26,7 +24,7 @@ in which a sensor is frozen. The last column of the first three tables is the sa
 """
 PAGE = Results(FOLDER / "variable-structure.md", "Variable structure: results", "make structure", ABOUT)
 PICTURE = (f"![Above: measurements of three sensors, the trend's prediction of each 20 s window, estimate and truth. Below: the trouble of each "
-           f"sensor in each window and which one two rules choose]({PICTURES.name}/{structure_picture.PATH.name})")
+           f"sensor in each window and which one two rules choose]({PICTURES.name}/variable-structure.png)")
 RULES = {"fixed_1": "sensor 1 always (0.15 m/s)", "fixed_2": "sensor 2 always (0.4 m/s)", "fixed_3": "sensor 3 always (0.25 m/s)",
          "fuse": "all three, nominal noise", "degree_only": "degree of observability (14) alone", "trend_acceptor": "trend acceptor (25)",
          "gate_then_degree": "acceptor's gate, then the degree", "normalised_innovation": "normalised innovation, may coast",
@@ -46,7 +44,7 @@ def measured(experiments=tuple(EXPERIMENTS)):
     """{(experiment, rule, metric): number}"""
     found = {}
     for name in experiments:
-        for rule, metric, value, _ in EXPERIMENTS[name][1](DEFAULT_RUNS, DEFAULT_SEED, lambda part: None):
+        for rule, metric, value, _ in EXPERIMENTS[name][1](DEFAULT_RUNS, DEFAULT_SEED):
             found[name, rule, metric] = value.value if isinstance(value, Interval) else value
     return found
 
@@ -86,15 +84,8 @@ def tables(found):
     return [PICTURE, "", *rules, *trend_table(found), *exact_table(found), *channel_table(found)]
 
 
-def main(arguments=None):
-    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args(arguments)
-    found = measured()
-    faults = PAGE.write(tables(found))
-    drawn = structure_picture.draw_stale()
-    for fault in faults:
-        print(f"structure: {PAGE.document}: {fault}", file=sys.stderr)
-    print(f"structure: {PAGE.document} written, {'the picture drawn' if drawn else 'its picture as it was'}, {len(faults)} findings")
-    return 1 if faults else 0
+def main():
+    return PAGE.publish(tables(measured()), [structure_picture.picture()])
 
 
 if __name__ == "__main__":

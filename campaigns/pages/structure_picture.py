@@ -1,18 +1,13 @@
-"""The picture of docs/results/variable-structure.md: prediction and measurements of one flight, and the sensor of each 20 s window. The file
-holds the hash of this file and of what it shows, so that one that would be drawn otherwise is drawn again."""
-import hashlib
-import io
+"""The picture of docs/results/variable-structure.md: prediction and measurements of one flight, and the sensor of each 20 s window."""
 from dataclasses import dataclass
 
 import numpy as np
-from page import Fault
+from pictures import GRID_COLOUR, TRUTH_COLOUR, Picture
 from results import PICTURES
-from robust_pictures import COLOURS, DPI, KEY, MAX_BYTES, TRUTH_COLOUR, digest_in
 from variable_structure.rules import RULES
 from variable_structure.scenario import BIASED, DEGRADED, FROZEN, SENSORS, SOUND, WINDOW_S, fly
 from variable_structure.structure import fly_by
 
-PATH = PICTURES / "variable-structure.png"
 SEED, RUN, FROM_WINDOW, WINDOWS = 2024, 28, 2, 12
 SENSOR_COLOURS = ("#0b5394", "#e08e0b", "#1b7f3b")
 PREDICTED_COLOUR, ESTIMATE_COLOUR = "#c0187a", "#6d7680"
@@ -48,26 +43,6 @@ def shown():
                  flights.trouble[RUN, windows], chosen)
 
 
-def digest(what):
-    numbers = [f"{x:.5g}" for array in (what.measured, what.true, what.predicted, what.estimate, what.trouble, *what.chosen.values())
-               for x in np.ravel(array)]
-    with open(__file__, "rb") as source:
-        return hashlib.sha256(source.read() + " ".join(numbers).encode("ascii")).hexdigest()
-
-
-def stale():
-    return digest_in(PATH) != digest(shown())
-
-
-def draw_stale():
-    """Draws it unless it shows this; whether it was drawn."""
-    what = shown()
-    if digest_in(PATH) == digest(what):
-        return False
-    save(what)
-    return True
-
-
 # --- drawing ----------------------------------------------------------------------------------------------------------
 
 
@@ -80,7 +55,7 @@ def draw_flight(axes, what):
     for window in range(WINDOWS):
         span = slice(window * WINDOW_S, (window + 1) * WINDOW_S)
         axes.plot(times[span], what.predicted[span], "-", lw=1.6, color=PREDICTED_COLOUR, label="predicted by the trend" if window == 0 else None)
-        axes.axvline(times[span.start], color="#e3e6ea", lw=0.8, zorder=0)
+        axes.axvline(times[span.start], color=GRID_COLOUR, lw=0.8, zorder=0)
     axes.plot(times, what.true, "-", lw=0.8, color=TRUTH_COLOUR, label="truth")
     axes.set_ylim(-LIMIT_M_S - 0.3, LIMIT_M_S + 3.0)  # room for the legend
     axes.set_ylabel(f"error of velocity in m/s\n(beyond {LIMIT_M_S:g}: at the edge)", fontsize=9)
@@ -106,26 +81,15 @@ def draw_choices(axes, what):
     axes.legend(fontsize=8, frameon=False, ncol=2, loc="upper left", bbox_to_anchor=(0.0, -0.22))
 
 
-def save(what):
-    try:
-        import matplotlib
-        matplotlib.use("Agg")
-        import matplotlib.pyplot as plt
-        from PIL import Image, PngImagePlugin
-    except ImportError as missing:
-        raise Fault(f"{missing.name} is missing, which draws the picture: run make structure") from missing
-    figure, (top, bottom) = plt.subplots(2, 1, sharex=True, figsize=(10.0, 6.4), dpi=DPI, height_ratios=(3, 2))
+def draw(figure, what):
+    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     draw_flight(top, what)
     draw_choices(bottom, what)
     top.set_xlim(FROM_WINDOW * WINDOW_S, (FROM_WINDOW + WINDOWS) * WINDOW_S)
     for axes in (top, bottom):
         axes.tick_params(labelsize=8)
-    figure.suptitle("What is predicted, what is measured, and the sensor of each window of 20 s", x=0.01, ha="left", fontsize=12, fontweight="bold")
-    figure.tight_layout(rect=(0.0, 0.0, 1.0, 0.99))
-    drawn, text = io.BytesIO(), PngImagePlugin.PngInfo()
-    figure.savefig(drawn, format="png")
-    plt.close(figure)
-    text.add_text(KEY, digest(what))
-    Image.open(drawn).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(PATH, optimize=True, pnginfo=text)
-    if PATH.stat().st_size > MAX_BYTES:
-        raise Fault(f"{PATH}: {PATH.stat().st_size} bytes, more than {MAX_BYTES}")
+
+
+def picture():
+    return Picture(PICTURES / "variable-structure.png", "What is predicted, what is measured, and the sensor of each window of 20 s",
+                   (10.0, 6.4), draw, shown(), __file__)

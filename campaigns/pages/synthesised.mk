@@ -3,8 +3,8 @@
 ## synthesised: measure the numbers and draw the pictures of docs/results/synthesised-filters.md (1 minute)
 synthesised:
 	@sh tools/deps.sh test
-	@sh tools/deps.sh design
-	@$(MAKE) -s $(H)/roll_replay $(H)/test_adaptive_roll
+	@sh tools/deps.sh design papers
+	@$(MAKE) -s $(BATCH) $(H)/test_adaptive_roll
 	@$(PY) campaigns/pages/synthesised.py
 
 .PHONY: synthesised

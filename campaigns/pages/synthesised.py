@@ -1,25 +1,24 @@
-"""docs/results/synthesised-filters.md and its pictures, from the closed forms of tools/design and from programs that run the shipped filters
-(build/host/roll_replay, build/host/test_adaptive_roll). Fails with the name of each number that does not come out again."""
-import argparse
+"""docs/results/synthesised-filters.md and its pictures, from the closed forms of tools/design and from the shipped filters
+(build/papers/libbatch.so, build/host/test_adaptive_roll). Fails with the name of each number that does not come out again."""
 import math
 import pathlib
 import re
-import subprocess
 import sys
 from fractions import Fraction
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 try:
     import numpy as np
+    import pictures
     import synthesised_pictures
     from design.configuration import kalman_for, steady_kalman
     from design.response import pole_radius, step
     from design.structure import Filter, alpha_beta
     from design.synthesis import by_formula, error_by_formula
+    from synthesis import batch
 except ImportError as missing:
     sys.exit(f"synthesised: {missing.name} is missing: run make synthesised, which installs it")
-from page import Fault, run_as_program
-from results import FOLDER, PICTURES, Results, table
+from results import FOLDER, Fault, Results, output_of, run_as_program, table
 
 ABOUT = """
 Properties of the papers' filter (2, 1, 0): x_e = 2 x1 - x2 - a1 (x1 - 2 x2 + x3), x = x_e + b0 u, from closed forms; and what `adaptive` makes of the
@@ -32,7 +31,7 @@ PAGE = Results(FOLDER / "synthesised-filters.md", "Synthesised filters: results"
 LEAST = ("Dynamic error D in second differences of the signal. `synth`: b0 = 1 / (1 + D), noise gain (1 + 2 D) / (1 + 4 D). Alpha-beta: beta = 2 / "
          "(1 + 2 sqrt D + 2 D), alpha = 1 - beta D, noise gain (1 + 4 sqrt D) / (1 + 2 sqrt D)^2. Steady Kalman: beta = alpha^2 / (2 - alpha), "
          "alpha = 4 / (3 + sqrt(1 + 8 D)).")
-REPLAY, ROLL_TEST = "build/host/roll_replay", "build/host/test_adaptive_roll"
+ROLL_TEST = "build/host/test_adaptive_roll"
 
 # name, a1, b0
 PRESETS = (("paper 001", Fraction(-3, 10), Fraction(1, 10)), ("what 001's figures belong to", Fraction(0), Fraction(1, 10)),
@@ -48,16 +47,6 @@ SHARES = (0.0, 0.05, 0.15)
 # paper 000's roll: 15 s at 10 Hz, R = 0.6 deg^2, 16 LSB per degree
 SAMPLES, RATE_DHZ, R_DEG2, LSB_PER_DEGREE = 151, 100, 0.6, 16
 SHIFT_SIGMA, SHIFT_RUNS, SEED = 20.0, 2000, 2024
-
-
-def output_of(command, given=None):
-    try:
-        done = subprocess.run([str(c) for c in command], input=given, capture_output=True, text=True, timeout=600)
-    except FileNotFoundError as missing:
-        raise Fault(f"{command[0]} is not built: make synthesised builds it") from missing
-    if done.returncode != 0:
-        raise Fault(f"{command[0]}: status {done.returncode}: {(done.stderr or done.stdout).strip()[-200:]}")
-    return done.stdout
 
 
 # --- closed forms -----------------------------------------------------------------------------------------------------
@@ -100,16 +89,15 @@ def truth_deg(profile):
             "sine30": 30.0 * np.sin(2.0 * math.pi * turn)}[profile]
 
 
-def replayed(runs_lsb, names):
-    """Estimates in degrees, runs x samples x filters, each run from a start of its own."""
-    text = "-\n".join("".join(f"{z}\n" for z in run) for run in runs_lsb)
-    lines = output_of([REPLAY, RATE_DHZ, R_DEG2 * LSB_PER_DEGREE ** 2, *names], text)
-    flat = np.array([[float(x) for x in line.split(",")] for line in lines.split()])
-    return flat.reshape(len(runs_lsb), SAMPLES, len(names)) / LSB_PER_DEGREE
+def replayed(runs_lsb, name):
+    """Estimates of a filter with its defaults and told R, in degrees, runs x samples, each run from a start of its own."""
+    estimates = batch.shipped(name, RATE_DHZ, {}, R_DEG2 * LSB_PER_DEGREE ** 2, False, runs_lsb)
+    return estimates / 65536.0 / LSB_PER_DEGREE
 
 
 def measured_lsb(degrees):
-    return np.clip(np.rint(degrees * LSB_PER_DEGREE), -4096, 4095).astype(int)
+    """Of each run, to whole LSB."""
+    return np.clip(np.rint(np.atleast_2d(degrees) * LSB_PER_DEGREE), -4096, 4095)
 
 
 def outlier_run(share=0.05):
@@ -125,7 +113,7 @@ def shifted(share):
     for profile in PROFILES:
         truth, size = truth_deg(profile), (SHIFT_RUNS, SAMPLES)
         off = SHIFT_SIGMA * np.where(chance.random(size) < share, chance.choice((-1.0, 1.0), size), 0.0)
-        estimates = replayed(measured_lsb(truth + math.sqrt(R_DEG2) * (chance.normal(size=size) + off)), ["adaptive"])[:, :, 0]
+        estimates = replayed(measured_lsb(truth + math.sqrt(R_DEG2) * (chance.normal(size=size) + off)), "adaptive")
         square = np.mean((estimates - truth) ** 2, axis=0)
         found.append([np.mean(square[part]) for part in (slice(20, 51), slice(60, 101), slice(110, 151))])
     return found
@@ -202,7 +190,7 @@ def adaptive_tables(grid):
 
 def pictures_of(grid):
     truth, samples = outlier_run()
-    estimates = replayed([samples], list(synthesised_pictures.FILTERS))[0]
+    estimates = np.array([replayed(samples, name)[0] for name in synthesised_pictures.FILTERS]).T
     steps = []
     for a1, b0 in ((-0.3, 0.1), (0.0, 0.3), (0.0, 2 / 3)):
         f = Filter(2, (a1,), (b0,))
@@ -212,21 +200,14 @@ def pictures_of(grid):
     kalman = [(f.dynamic_error(), f.noise_gain()) for f in (steady_kalman(2, drive) for drive in np.logspace(-6.3, 2.2, 200))]
     held = [(f.dynamic_error(), f.noise_gain()) for f in map(fading, np.linspace(0.1, 0.6, 60))]
     marks = [(float(row[5]), float(row[3]), f"({float(row[1]):.2g}, {float(row[2]):.2g})") for row in closed_rows() if row[1] <= 0]
-    return synthesised_pictures.contents(steps, (lags, curves, kalman, held, marks), (truth, samples / LSB_PER_DEGREE, estimates),
+    return synthesised_pictures.contents(steps, (lags, curves, kalman, held, marks), (truth, samples[0] / LSB_PER_DEGREE, estimates),
                                          (grid, GATE_CHOSEN))
 
 
-def main(arguments=None):
-    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args(arguments)
+def main():
     grid = curve()
-    pictures = pictures_of(grid)
-    shown = [line for picture in pictures for line in (f"![{picture.title}]({PICTURES.name}/{picture.path.name})", "")]
-    faults = PAGE.write(shown + closed_tables() + adaptive_tables(grid))
-    drawn = synthesised_pictures.draw_stale(pictures)
-    for fault in faults:
-        print(f"synthesised: {PAGE.document}: {fault}", file=sys.stderr)
-    print(f"synthesised: {PAGE.document} written, {drawn} of {len(pictures)} pictures drawn, {len(faults)} findings")
-    return 1 if faults else 0
+    shown = pictures_of(grid)
+    return PAGE.publish(pictures.on_page(shown) + closed_tables() + adaptive_tables(grid), shown)
 
 
 if __name__ == "__main__":

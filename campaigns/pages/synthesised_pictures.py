@@ -1,17 +1,9 @@
-"""The pictures of docs/results/synthesised-filters.md. Each file holds the hash of this file and of the numbers that it draws, so one that a new run
-would draw otherwise is drawn anew, and an equal one is left as it is."""
-import hashlib
-import io
-import pathlib
-from dataclasses import dataclass
-from typing import Callable
-
+"""The pictures of docs/results/synthesised-filters.md."""
 import numpy as np
 from scipy.signal import lfilter
 
 from design.response import numbers
-from robust_pictures import COLOURS, DPI, KEY, MAX_BYTES, RAW_COLOUR, TRUTH_COLOUR, digest_in
-from page import Fault
+from pictures import RAW_COLOUR, TRUTH_COLOUR, Picture, plain
 from results import PICTURES
 
 FILTERS = {"synth": ("#1b7f3b", 1.5), "kf": ("#e08e0b", 1.5), "adaptive": ("#0b5394", 2.0)}
@@ -20,63 +12,21 @@ FAINT = "#8a939c"
 STEP_SAMPLES = 60
 
 
-@dataclass
-class Picture:
-    path: pathlib.Path
-    title: str
-    inches: tuple
-    draw: Callable
-    data: tuple
-    digest: str = ""
-
-
-def flat(data):
-    """All the numbers and names of nested data, in order."""
-    if isinstance(data, dict):
-        data = [part for item in data.items() for part in item]
-    if isinstance(data, (list, tuple)):
-        return [number for part in data for number in flat(part)]
-    if isinstance(data, np.ndarray):
-        return [f"{float(x):.5g}" for x in data.ravel()]
-    return [f"{data:.5g}" if isinstance(data, float) else str(data)]
-
-
 def contents(steps, trade, roll, gates):
-    """The pictures, each with its hash."""
+    """The pictures of this run."""
     waves = [(a1, b0, gain, wave(ours), wave(theirs)) for a1, b0, gain, ours, theirs in steps]
-    wanted = [("step", "A step, at equal noise gain", (10.0, 3.6), draw_steps, waves),
-              ("floor", "Noise gain against what remains under acceleration", (10.0, 4.6), draw_trade, trade),
-              ("outliers", "A roll of paper 000 (cos60), 5 % of the samples with 20 times the noise", (10.0, 5.6), draw_roll, roll),
-              ("gate", "adaptive: what the width of its gate trades, 10 Hz", (10.0, 4.2), draw_gate, gates)]
-    source = pathlib.Path(__file__).read_bytes()
-    return [Picture(PICTURES / f"synthesised-{name}.png", title, inches, draw, data,
-                    hashlib.sha256(source + "\n".join(flat(data)).encode("ascii")).hexdigest()) for name, title, inches, draw, data in wanted]
+    wanted = [("step", "A step, at equal noise gain", 3.6, draw_steps, waves),
+              ("floor", "Noise gain against what remains under acceleration", 4.6, draw_trade, trade),
+              ("outliers", "A roll of paper 000 (cos60), 5 % of the samples with 20 times the noise", 5.6, draw_roll, roll),
+              ("gate", "adaptive: what the width of its gate trades, 10 Hz", 4.2, draw_gate, gates)]
+    return [Picture(PICTURES / f"synthesised-{name}.png", title, (10.0, inches), draw, data, __file__) for name, title, inches, draw, data in wanted]
 
 
 def wave(f):
     return lfilter(numbers(f.b), numbers(f.characteristic), np.ones(STEP_SAMPLES))
 
 
-def stale(pictures):
-    return [picture for picture in pictures if digest_in(picture.path) != picture.digest]
-
-
-def draw_stale(pictures):
-    """Draws those that do not show this run; how many."""
-    todo = stale(pictures)
-    for picture in todo:
-        save(picture)
-    return len(todo)
-
-
 # --- drawing ----------------------------------------------------------------------------------------------------------
-
-
-def plain(axes, x, y):
-    axes.set_xlabel(x, fontsize=9)
-    axes.set_ylabel(y, fontsize=9)
-    axes.tick_params(labelsize=8)
-    axes.grid(True, color="#e3e6ea", lw=0.6)
 
 
 def draw_steps(figure, waves):
@@ -147,21 +97,3 @@ def draw_gate(figure, gates):
     axes.set_xlim(widths[0], widths[-1])
     plain(axes, "gate in sigmas of the innovation", "mean square error, degree^2")
     axes.legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
-
-
-def save(picture):
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    from PIL import Image, PngImagePlugin
-    figure = plt.figure(figsize=picture.inches, dpi=DPI)
-    picture.draw(figure, picture.data)
-    figure.suptitle(picture.title, x=0.01, ha="left", fontsize=12, fontweight="bold")
-    figure.tight_layout(rect=(0.0, 0.0, 1.0, 0.99))
-    drawn, text = io.BytesIO(), PngImagePlugin.PngInfo()
-    figure.savefig(drawn, format="png")
-    plt.close(figure)
-    text.add_text(KEY, picture.digest)
-    Image.open(drawn).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(picture.path, optimize=True, pnginfo=text)
-    if picture.path.stat().st_size > MAX_BYTES:
-        raise Fault(f"{picture.path}: {picture.path.stat().st_size} bytes, more than {MAX_BYTES}")

@@ -11,20 +11,19 @@ import argparse
 import concurrent.futures
 import json
 import pathlib
-import subprocess
 import sys
 import time
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-import page
 import page_sources
 from papers_judge import BANDED, VERDICT_RUNS, Fault, judge, read_expected
 from papers_page import DOCUMENT, write_page
+from results import output_of, run_as_program
 
 # programs and accepted bands of each paper; a folder is a program in Python
-PAPERS = {paper: (tuple(map(pathlib.Path, programs)), pathlib.Path(f"host_tests/papers/expected_{paper}.csv"))
-          for paper, programs in (("000", ("build/papers/paper000",)), ("001", ("build/papers/paper001",)),
-                                  ("002", ("build/papers/paper002", "build/papers/operations002")), ("003", ("build/papers/paper003",)),
+PAPERS = {paper: (programs, pathlib.Path(f"host_tests/papers/expected_{paper}.csv"))
+          for paper, programs in (("000", ("campaigns/synthesis 000",)), ("001", ("campaigns/synthesis 001",)),
+                                  ("002", ("campaigns/resilience", "build/papers/operations002")), ("003", ("build/papers/paper003",)),
                                   ("004", ("campaigns/variable_structure", "build/papers/paper004_board")))}
 PYTHON = pathlib.Path("build/venv/bin/python")  # which has numpy
 # runs that the programs make of --runs 10000, and what each shipped filter must have a band for
@@ -33,86 +32,48 @@ WANTED = {"000": ("mse_2_5",), "001": ("sigma_stationary",), "002": BANDED, "003
 JSON = pathlib.Path("build/papers.json")
 PAGE_RUNS, PAGE_SEED = 10000, 2024
 WORKERS = 2
-LIMIT_S = 900
+BAR = 30  # columns
 
 
-class Bar:
-    """Progress over all experiments, on a terminal only."""
+def show_progress(done, work, began):
+    """How much of the work is done and the time left, on a terminal only."""
+    if sys.stderr.isatty() and done:
+        filled, spent = int(BAR * done / work), time.monotonic() - began
+        left = f"{spent * (work - done) / done:.0f} s left"
+        print(f"\rpapers [{'#' * filled}{'.' * (BAR - filled)}] {100 * done / work:3.0f} %  {left:<12}", end="", file=sys.stderr, flush=True)
 
-    def __init__(self, works, stream=sys.stderr):
-        self.works, self.done = works, {name: 0.0 for name in works}
-        self.stream, self.began, self.last = stream, time.monotonic(), 0.0
 
-    def text(self, now):
-        part = sum(self.works[n] * self.done[n] for n in self.works) / sum(self.works.values())
-        spent = now - self.began
-        left = f"{spent * (1 - part) / part:.0f} s left" if part > 0.01 else "..."
-        filled = int(30 * part)
-        return f"papers [{'#' * filled}{'.' * (30 - filled)}] {100 * part:3.0f} %  {left}"
-
-    def at(self, name, part):
-        self.done[name] = min(1.0, part)
-        now = time.monotonic()
-        if self.stream.isatty() and now - self.last > 0.1:
-            self.last = now
-            self.stream.write(f"\r{self.text(now)}   ")
-            self.stream.flush()
-
-    def end(self):
-        if self.stream.isatty():
-            self.stream.write("\r" + " " * 70 + "\r")
-            self.stream.flush()
+def command_of(program):
+    words = program.split()
+    if not pathlib.Path(words[0]).is_dir():
+        return words
+    if not PYTHON.exists():
+        raise Fault(f"{program}: needs {PYTHON}, which is not there: sh tools/deps.sh papers")
+    return [PYTHON, *words]
 
 
 def number(text):
     return float(text) if text else None
 
 
-def command_of(program):
-    if not program.is_dir():
-        return [str(program)]
-    if not PYTHON.exists():
-        raise Fault(f"{program}: needs {PYTHON}, which is not there: sh tools/deps.sh papers")
-    return [str(PYTHON), str(program)]
-
-
-def run_one(program, experiment, options, bar):
+def run_one(program, experiment, options):
     """Rows (dictionaries) that an experiment prints."""
-    command = [*command_of(program), experiment, "--runs", str(options.runs), "--seed", str(options.seed)]
-    rows, started = [], time.monotonic()
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        for line in process.stdout:
-            cells = line.rstrip("\n").split("\t")
-            if cells[0] == "progress":
-                bar.at(experiment, float(cells[1]))
-            elif cells[0] == "row" and len(cells) == 9:
-                rows.append(dict(zip(("experiment", "filter", "arithmetic", "metric"), cells[1:5]),
-                                 value=float(cells[5]), ci_lo=number(cells[6]), ci_hi=number(cells[7]), runs=int(cells[8])))
-            else:
-                process.kill()
-                raise Fault(f"{experiment}: cannot read its line '{line.strip()}'")
-            if time.monotonic() - started > LIMIT_S:
-                process.kill()
-                raise Fault(f"{experiment}: not at its end after {LIMIT_S} s")
-        told = process.stderr.read().strip()
-        if process.wait() != 0:
-            raise Fault(f"{experiment}: {told or f'status {process.returncode}'}")
+    rows = []
+    for line in output_of([*command_of(program), experiment, "--runs", options.runs, "--seed", options.seed]).splitlines():
+        kind, *cells = line.split("\t")
+        if kind != "row" or len(cells) != 8:
+            raise Fault(f"{experiment}: cannot read its line '{line}'")
+        rows.append(dict(zip(("experiment", "filter", "arithmetic", "metric"), cells),
+                         value=float(cells[4]), ci_lo=number(cells[5]), ci_hi=number(cells[6]), runs=int(cells[7])))
     if not rows:
         raise Fault(f"{experiment}: printed no row")
-    bar.at(experiment, 1.0)
     return rows
 
 
 def experiments_of(programs):
     """{experiment: (program, relative work)}."""
-    found = {}
-    for program in programs:
-        done = subprocess.run([*command_of(program), "--list"], capture_output=True, text=True, timeout=600, check=False)
-        if done.returncode != 0:
-            raise Fault(f"{program} --list gave status {done.returncode}: {done.stderr.strip()}")
-        for name, work in (line.split("\t") for line in done.stdout.splitlines()):
-            found[name] = (program, float(work))
-    return found
+    lines = [(program, line.split("\t")) for program in programs for line in output_of([*command_of(program), "--list"]).splitlines()]
+    return {name: (program, float(work)) for program, (name, work) in lines}
 
 
 def chosen_of(words, only=()):
@@ -125,14 +86,14 @@ def chosen_of(words, only=()):
 
 
 def run_all(experiments, options):
-    """Rows of all experiments, in the order of the list; two at a time, the longest first."""
-    bar = Bar({name: work for name, (_, work) in experiments.items()})
+    """Rows of all experiments, in the order of the list; two at a time."""
+    began, done, work = time.monotonic(), 0.0, sum(part for _, part in experiments.values())
     with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
-        try:
-            parts = list(pool.map(lambda entry: run_one(entry[1][0], entry[0], options, bar), experiments.items()))
-        finally:
-            bar.end()
-    return [row for part in parts for row in part]
+        futures = {pool.submit(run_one, program, name, options): part for name, (program, part) in experiments.items()}
+        for future in concurrent.futures.as_completed(futures):
+            done += futures[future]
+            show_progress(done, work, began)
+    return [row for future in futures for row in future.result()]
 
 
 def as_json(paper, rows):
@@ -142,34 +103,33 @@ def as_json(paper, rows):
     return [{"paper": paper, **{f: finite(row.get(f)) for f in fields}} for row in rows]
 
 
-def main():
+def options_of(words):
     parser = argparse.ArgumentParser(usage="papers.py [--paper NNN...] [--runs N] [--seed N] [--only WORD...]")
     parser.add_argument("--paper", nargs="+", default=[], choices=list(PAPERS))
     parser.add_argument("--runs", type=int, default=PAGE_RUNS)
     parser.add_argument("--seed", type=int, default=PAGE_SEED)
     parser.add_argument("--only", nargs="+", default=[])
-    options = parser.parse_args()
+    return parser.parse_args(words)
+
+
+def main():
+    options = options_of(sys.argv[1:])
     whole = not options.only and options.runs >= PAGE_RUNS and options.seed == PAGE_SEED
-    began, failures, collected = time.monotonic(), [], []
-    try:
-        sources = page_sources.hash_now(DOCUMENT)
-        for paper, experiments in chosen_of(options.only, options.paper).items():
-            expected = read_expected(PAPERS[paper][1])
-            rows = run_all(experiments, options)
-            found = judge(rows, expected, bool(options.only), FULL_RUNS[paper], WANTED[paper])
-            failures += [f"paper {paper}: {text}" for text in found]
-            collected += as_json(paper, rows)
-            if whole:
-                write_page(paper, rows, options)
+    began, failures, collected, sources = time.monotonic(), [], [], page_sources.hash_now(DOCUMENT)
+    for paper, experiments in chosen_of(options.only, options.paper).items():
+        expected = read_expected(PAPERS[paper][1])
+        rows = run_all(experiments, options)
+        found = judge(rows, expected, bool(options.only), FULL_RUNS[paper], WANTED[paper])
+        failures += [f"paper {paper}: {text}" for text in found]
+        collected += as_json(paper, rows)
         if whole:
-            held = json.loads(JSON.read_text(encoding="utf-8")) if options.paper and JSON.exists() else []
-            kept = [row for row in held if row["paper"] not in options.paper]
-            JSON.write_text(json.dumps(sorted(kept + collected, key=lambda row: row["paper"]), indent=0) + "\n", encoding="utf-8")
-            if not options.paper:
-                page_sources.write_hash(DOCUMENT, sources)
-    except (Fault, page.Fault, OSError, subprocess.TimeoutExpired) as error:
-        print(f"papers: {error}", file=sys.stderr)
-        return 2
+            write_page(paper, rows, options)
+    if whole:
+        held = json.loads(JSON.read_text(encoding="utf-8")) if options.paper and JSON.exists() else []
+        kept = [row for row in held if row["paper"] not in options.paper]
+        JSON.write_text(json.dumps(sorted(kept + collected, key=lambda row: row["paper"]), indent=0) + "\n", encoding="utf-8")
+        if not options.paper:
+            page_sources.write_hash(DOCUMENT, sources)
     for text in failures:
         print(text)
     judged = sum(1 for row in collected if row["verdict"])
@@ -180,4 +140,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_as_program("papers", main)

@@ -1,16 +1,14 @@
 """Bands of make papers as host_tests/papers/expected_*.csv states them: numbers, other numbers of the same run, widths in standard errors."""
 import re
 
+from page_sources import Fault
+
 REF = r"(?:@\w+|#\S+|[\w(][\w().:=-]*)"
 BOUND = re.compile(rf"(?:(-?\d+(?:\.\d+)?(?:e-?\d+)?)|(?:(\d+(?:\.\d+)?) x )?({REF}))(?: \+ (\d) se)?$")
 PART = re.compile(r"(\d+(?:\.\d+)?(?:e-?\d+)?)( se| %)?$")
 BOUND_RULES = re.compile(r"reproduced (<=|>=) (.+); refuted (<=|>=) (.+)$")
 SE_MOST = 4  # of a thousand numbers one leaves four standard errors once in sixteen seeds
 NORMAL_95 = 1.959964
-
-
-class Fault(Exception):
-    """One sentence about what is wrong."""
 
 
 class Rows:

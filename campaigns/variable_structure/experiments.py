@@ -17,13 +17,12 @@ RUNS_PER_FLIGHT = 20  # of those that are asked for: a flight is 20 windows
 FEWEST = 10  # flights, however few runs are asked for
 
 
-def observability(_runs, _seed, tell):
+def observability(_runs, _seed):
     """What (9)-(12) give for the channel with its velocity measured."""
     matrix = constant_observability(ins_channel(), [1.0, 0.0, 0.0])
     for number, gain in enumerate(noise_gains(pseudo_inverse(matrix)), 1):
         yield "channel", f"sum_a2_{number}", float(gain), 1
     yield "channel", "condition", float(np.linalg.cond(matrix)), 1
-    tell(1.0)
 
 
 def estimated(flights, seed):
@@ -63,18 +62,17 @@ def exact_trends(begins):
         yield name, moments.prediction_mse(history, state, begins, TREND_SENSOR_M_S ** 2)
 
 
-def trends(runs, seed, tell):
+def trends(runs, seed):
     """What each trend makes of 40 s for the 20 s that follow: rms error of a window, median over windows and flights."""
     flights = fly(max(FEWEST, runs // RUNS_PER_FLIGHT), seed, seconds=TREND_FLIGHT_S)
     states, errors, picked = estimated(flights, seed), {}, []
     begins = range(TREND_FROM_S, TREND_FLIGHT_S - WINDOW_S, WINDOW_S)
-    for number, begin in enumerate(begins, 1):
+    for begin in begins:
         found, chosen = predictions(states[:, :begin])
         picked.append(chosen)
         for name, values in found.items():
             missed = values - flights.true[:, begin:begin + WINDOW_S, 0]
             errors.setdefault(name, []).append(np.sqrt(np.mean(np.square(missed), axis=1)))
-        tell(number / len(begins))
     for name, parts in errors.items():
         by_run = np.stack(parts, axis=1)
         yield name, "error_median", intervals.pooled_median(by_run, seed), len(by_run)
@@ -100,16 +98,14 @@ def rows_of(name, flown, flights, seed):
 
 def windows(freezing, next_window=False, lasting=1.0):
     """An experiment: the three-sensor flight under every rule."""
-    def experiment(runs, seed, tell):
+    def experiment(runs, seed):
         flights = fly(max(FEWEST, runs // RUNS_PER_FLIGHT), seed, freezing, lasting)
-        for number, (name, rule) in enumerate(RULES.items(), 1):
+        for name, rule in RULES.items():
             yield from rows_of(name, fly_by(rule, flights, next_window), flights, seed)
-            tell(number / (len(RULES) + 1))
         yield from rows_of("sample_gate", fly_gated(flights), flights, seed)
         if lasting == 1.0 and not next_window:
             for name, sensors in moments.USED.items():
                 yield name, "exact_mse", moments.flight_mse(sensors, freezing), 1
-        tell(1.0)
     return experiment
 
 

@@ -224,14 +224,12 @@ void phases(const Options &options)
     const Runs fresh = make(options.seed * 1000U + 500U, part(fresh_runs));
     const int runs = static_cast<int>(fresh.size());
     const std::vector<Subject> all = subjects();
-    Progress progress(static_cast<double>(all.size()));
     std::vector<Judged> found;
     for (const Subject &subject : all) {
         const Values best = tuned(subject, training);
         tell_parameters(subject, best);
         found.push_back(judged(subject, best, fresh));
         tell_errors(subject.name, subject.arithmetic, found.back().errors, runs);
-        progress.advance();
     }
     tell_bank(found.front().bank, runs);
     std::vector<const Values *> above;

@@ -12,7 +12,6 @@ extern "C" {
 namespace papers
 {
 constexpr double period_s = 0.0247;
-constexpr double r_deg2 = 0.0064;
 constexpr double q_rate =
     0.0009; // (degree/s)^2 per sample, on the rate: the reading that fits the paper's linear filter
 constexpr double clean = 0.85;

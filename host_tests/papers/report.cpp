@@ -46,15 +46,4 @@ void row(const std::string &experiment, const std::string &filter, Arithmetic ar
     print(experiment, filter, arithmetic, metric,
           number(value.value) + "\t" + number(value.low) + "\t" + number(value.high), runs);
 }
-
-void Progress::advance(double by)
-{
-    done_ += by;
-    const int percent = static_cast<int>(100.0 * done_ / work_);
-    if (percent > told_) {
-        told_ = percent;
-        std::printf("progress\t%.2f\n", done_ / work_);
-        std::fflush(stdout);
-    }
-}
 } // namespace papers

@@ -1,4 +1,4 @@
-// What every experiment of every paper prints: rows and progress, on standard output, for campaigns/papers/papers.py.
+// What every experiment of every paper prints: rows on standard output, for campaigns/papers/papers.py.
 #ifndef PAPERS_REPORT_H
 #define PAPERS_REPORT_H
 
@@ -25,19 +25,6 @@ void row(const std::string &experiment, const std::string &filter, Arithmetic ar
          double value, int runs);
 void row(const std::string &experiment, const std::string &filter, Arithmetic arithmetic, const std::string &metric,
          const Interval &value, int runs);
-
-// `progress` and the part done.
-class Progress
-{
-  public:
-    explicit Progress(double work) : work_(work) {}
-    void advance(double by = 1.0);
-
-  private:
-    double work_;
-    double done_ = 0.0;
-    int told_ = -1;
-};
 
 struct Experiment {
     const char *name;

@@ -31,19 +31,6 @@ double total(const std::vector<double> &values)
     return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-Interval mean_of(const std::vector<double> &values, double &sd)
-{
-    const auto n = static_cast<double>(values.size());
-    const double mean = total(values) / n;
-    double square = 0.0;
-    for (const double value : values) {
-        square += (value - mean) * (value - mean);
-    }
-    sd = std::sqrt(square / std::max(1.0, n - 1.0));
-    const double half = 1.959964 * sd / std::sqrt(n);
-    return { mean, mean - half, mean + half };
-}
-
 std::vector<Interval> bootstrap_ratios(const std::vector<const std::vector<double> *> &numerators,
                                        const std::vector<const std::vector<double> *> &denominators, std::uint64_t seed)
 {
@@ -70,14 +57,5 @@ std::vector<Interval> bootstrap_ratios(const std::vector<const std::vector<doubl
                            quantile(ratios[i], 0.975) });
     }
     return result;
-}
-
-Interval share(double count, double n)
-{
-    constexpr double z = 1.959964;
-    const double p = count / n;
-    const double middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
-    const double half = z / (1.0 + z * z / n) * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
-    return { p, std::min(p, std::max(0.0, middle - half)), std::max(p, middle + half) };
 }
 } // namespace papers

@@ -18,17 +18,11 @@ double quantile(std::vector<double> values, double q);
 
 double total(const std::vector<double> &values);
 
-// Mean with its 95 % interval, normal: for thousands of runs; and the standard deviation of one.
-Interval mean_of(const std::vector<double> &values, double &sd);
-
 // Sum of a over sum of b with the percentiles of 1,000 resamplings of the runs (the same for a and b): for several b at
 // once.
 std::vector<Interval> bootstrap_ratios(const std::vector<const std::vector<double> *> &numerators,
                                        const std::vector<const std::vector<double> *> &denominators,
                                        std::uint64_t seed);
-
-// A share of n with Wilson's interval.
-Interval share(double count, double n);
 } // namespace papers
 
 #endif

@@ -94,7 +94,7 @@ nav_plan_t plan_of(const Case &which)
     return plan;
 }
 
-void fly(const char *experiment, const Case &which, const Options &options, Progress &progress)
+void fly(const char *experiment, const Case &which, const Options &options)
 {
     const int flights = std::clamp(options.runs / runs_of_a_flight, 1, most_flights);
     const auto flight = std::make_unique<nav_flight_t>();
@@ -106,7 +106,6 @@ void fly(const char *experiment, const Case &which, const Options &options, Prog
         for (std::size_t m = 0; m < metrics.size(); m++) {
             values[m].push_back(metrics[m].of(*flight));
         }
-        progress.advance(1.0 / flights);
     }
     for (std::size_t m = 0; m < metrics.size(); m++) {
         row(experiment, which.name, arithmetic_of(*which.variant), metrics[m].name, median_of(values[m]), flights);
@@ -115,9 +114,8 @@ void fly(const char *experiment, const Case &which, const Options &options, Prog
 
 void fly_all(const char *experiment, const std::vector<Case> &cases, const Options &options)
 {
-    Progress progress(static_cast<double>(cases.size()));
     for (const Case &which : cases) {
-        fly(experiment, which, options, progress);
+        fly(experiment, which, options);
     }
 }
 } // namespace

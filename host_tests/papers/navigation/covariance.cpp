@@ -38,21 +38,18 @@ void rows(const Form &form, const nav_history_t &history, const nav_history_t &t
     }
 }
 
-void references(int states, nav_history_t &thesis, Progress &progress)
+void references(int states, nav_history_t &thesis)
 {
     const auto other = std::make_unique<nav_history_t>();
     nav_history_of_reference(&thesis, REFERENCE_NAV_ROOT, states, 0);
     rows({ "thesis", Arithmetic::in_double, states }, thesis, thesis);
-    progress.advance();
     nav_history_of_reference(other.get(), REFERENCE_NAV_CONVENTIONAL, states, 0);
     rows({ "conventional", Arithmetic::in_double, states }, *other, thesis);
-    progress.advance();
     nav_history_of_reference(other.get(), REFERENCE_NAV_JOSEPH, states, 0);
     rows({ "joseph", Arithmetic::in_double, states }, *other, thesis);
-    progress.advance();
 }
 
-void ours(const nav_variant_t &variant, const nav_history_t &thesis, Progress &progress)
+void ours(const nav_variant_t &variant, const nav_history_t &thesis)
 {
     const auto history = std::make_unique<nav_history_t>();
     for (const bool turns : { false, true }) {
@@ -60,7 +57,6 @@ void ours(const nav_variant_t &variant, const nav_history_t &thesis, Progress &p
         rows({ turns ? "ud_in_turns" : "ud", arithmetic_of(variant), variant.states }, *history, thesis);
         row("covariance", (turns ? "ud_in_turns_" : "ud_") + std::to_string(variant.states), arithmetic_of(variant),
             "least_d", history->least_d, 1);
-        progress.advance();
     }
 }
 } // namespace
@@ -68,12 +64,11 @@ void ours(const nav_variant_t &variant, const nav_history_t &thesis, Progress &p
 void covariance(const Options &)
 {
     const auto thesis = std::make_unique<nav_history_t>();
-    Progress progress(14.0);
-    references(9, *thesis, progress);
-    ours(n9d, *thesis, progress);
-    ours(n9f, *thesis, progress);
-    references(12, *thesis, progress);
-    ours(n12d, *thesis, progress);
-    ours(n12f, *thesis, progress);
+    references(9, *thesis);
+    ours(n9d, *thesis);
+    ours(n9f, *thesis);
+    references(12, *thesis);
+    ours(n12d, *thesis);
+    ours(n12f, *thesis);
 }
 } // namespace papers::navigation

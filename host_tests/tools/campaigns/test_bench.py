@@ -195,7 +195,7 @@ def cycles_go_to_the_function_that_the_profile_names():
         profile.write_text("\n".join(line for line in lines if f",{gone}" not in line) + "\n", encoding="ascii")
         try:
             bench.bench_where.parts(*bench.bench_where.read_profile(profile))
-        except LookupError as problem:
+        except bench.Fault as problem:
             assert str(problem).startswith(f"{gone} is not in the profile"), problem
         else:
             raise AssertionError(f"a profile without {gone} was taken")

@@ -9,7 +9,7 @@ import default_streams as streams  # noqa: E402
 import make_streams
 import recordings
 import results
-from page import Fault
+from results import Fault
 
 from system_support import run_all, test
 

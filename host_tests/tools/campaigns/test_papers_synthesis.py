@@ -1,9 +1,8 @@
 """Papers 000 and 001 of make papers in small: what has no chance in it against its bands and the page, Monte Carlo against the exact values,
-the judge of fewer runs, the markers of the page, and the messages, each with a fault that must be named."""
+the judge of fewer runs, each with a fault that must be named."""
 import copy
 import math
 import pathlib
-import re
 import subprocess
 import sys
 
@@ -12,35 +11,12 @@ import papers  # noqa: E402
 import papers_bands  # noqa: E402
 import papers_judge  # noqa: E402
 import papers_page  # noqa: E402
-import papers_page_synthesis as synthesis  # noqa: E402
+import papers_page_000 as synthesis  # noqa: E402
 import laws  # noqa: E402
+from papers_support import expected, made, refused, rows_of, rule, value  # noqa: E402
 from system_support import run_all, test  # noqa: E402
 
-RUNS = 1000  # 400 and 200 of these papers
 WITHOUT_CHANCE = {"000": ("schedules", "table1_search", "equal_noise", "roll_as_angle"), "001": ("altitude",)}
-ROWS = {}
-
-
-class Options:
-    runs, seed = RUNS, 7
-
-
-class Silent:
-    def at(self, *_):
-        pass
-
-
-def rows_of(paper, experiment):
-    """Made once."""
-    if (paper, experiment) not in ROWS:
-        ROWS[paper, experiment] = papers.run_one(papers.PAPERS[paper][0][0], experiment, Options(), Silent())
-    return copy.deepcopy(ROWS[paper, experiment])
-
-
-def value(rows, experiment, name, arithmetic, metric):
-    found = [r["value"] for r in rows if (r["experiment"], r["filter"], r["arithmetic"], r["metric"]) == (experiment, name, arithmetic, metric)]
-    assert len(found) == 1, f"{experiment}, {name} ({arithmetic}), {metric}: {len(found)} rows"
-    return found[0]
 
 
 def exact_rows(paper, *experiments):
@@ -62,15 +38,15 @@ def a_sample_takes_the_products_that_the_headers_tell():
 def numbers_without_chance_keep_their_bands():
     for paper, experiments in {"000": (*WITHOUT_CHANCE["000"], "roll_reference"), "001": WITHOUT_CHANCE["001"]}.items():
         rows = exact_rows(paper, *experiments)
-        expected = papers_judge.read_expected(papers.PAPERS[paper][1])
-        faults = papers_judge.judge(rows, expected, partial=True)
+        rules_of = expected(paper)
+        faults = papers_judge.judge(rows, rules_of, partial=True)
         assert faults == [], faults
         # the twin: a tenth more of any banded number leaves its band
         tight = [row for row in rows if row.get("band") and None not in row["band"] and row["band"][1] < 1.02 * row["band"][0]]
         assert len(tight) > 10, len(tight)
         for row in tight:
             row["value"] *= 1.1
-            assert papers_judge.judge(copy.deepcopy([row]), expected, partial=True), papers_judge.name_of(row)
+            assert papers_judge.judge(copy.deepcopy([row]), rules_of, partial=True), papers_judge.name_of(row)
 
 
 @test
@@ -123,51 +99,46 @@ def every_shipped_filter_has_its_rows():
 def what_has_no_chance_in_it_is_as_on_the_page():
     page = papers_page.DOCUMENT.read_text(encoding="utf-8")
     for paper, experiments in WITHOUT_CHANCE.items():
-        rows = [row for row in exact_rows(paper, *experiments) if synthesis.of([row], *synthesis.CHANCE_FREE[paper])]
-        papers_judge.judge(rows, papers_judge.read_expected(papers.PAPERS[paper][1]), partial=True)
-        part = papers_page.between(page, paper)[1]
-        found = synthesis.stale(paper, rows, part)
+        rows = [row for row in exact_rows(paper, *experiments) if synthesis.of([row], *papers_page.part_of(paper).CHANCE_FREE)]
+        papers_judge.judge(rows, expected(paper), partial=True)
+        found = papers_page.stale(paper, rows, page)
         assert found == [], "run campaigns/papers/papers.py --paper 000 001: " + "; ".join(found)
         # twins: another number, and one less
-        for row in [r for r in rows if r["arithmetic"] == "double"][::40]:
+        for row in [r for r in rows if r["arithmetic"] == "double"][::120]:
             if row["metric"] not in ("sigma_one_run_sd", "true_variance_mean") and row["value"]:
                 changed = copy.deepcopy(rows)
                 changed[rows.index(row)]["value"] = row["value"] * 1.25 if math.isfinite(row["value"]) else 1.0
-                assert synthesis.stale(paper, changed, part), papers_judge.name_of(row)
+                assert papers_page.stale(paper, changed, page), papers_judge.name_of(row)
         without = [r for r in rows if r["filter"] != rows[0]["filter"]]
-        assert any(line.startswith("the page has: ") for line in synthesis.stale(paper, without, part))
+        assert any(line.startswith("the page has: ") for line in papers_page.stale(paper, without, page))
 
 
 @test
 def verdicts_hang_on_the_runs_of_the_page():
-    made = {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "value": 35.0, "ci_lo": 34.0, "ci_hi": 36.0}
-    rule = {"experiment": "e", "filter": "f", "arithmetic": "double", "metric": "m", "low": "", "high": "", "published": "30-40",
-            "verdict": "refuted", "reason": "why", "line": "expected:1"}
-    assert papers_judge.judge_row({**made, "runs": 4000}, rule, 4000) and not papers_judge.judge_row({**made, "runs": 4000}, rule, 10000)
+    claim = rule(published="30-40", verdict="refuted", reason="why")
+    assert papers_judge.judge_row(made(runs=4000), claim, 4000) and not papers_judge.judge_row(made(runs=4000), claim, 10000)
     # a filter that ships and has no band is named; one of a stated tuning is not asked for
-    row = {**made, "arithmetic": "fixed", "runs": 4000}
-    faults = papers_judge.judge([dict(row)], [dict(rule, arithmetic="fixed")], False, 4000, ("m",))
+    row = made(arithmetic="fixed", runs=4000)
+    faults = papers_judge.judge([dict(row)], [dict(claim, arithmetic="fixed")], False, 4000, ("m",))
     assert any("has no band" in fault for fault in faults), faults
-    faults = papers_judge.judge([dict(row, filter="f(1)")], [dict(rule, arithmetic="fixed", filter="f*")], False, 4000, ("m",))
+    faults = papers_judge.judge([dict(row, filter="f(1)")], [dict(claim, arithmetic="fixed", filter="f*")], False, 4000, ("m",))
     assert not any("has no band" in fault for fault in faults), faults
 
 
 def ruled(**changes):
-    return {"experiment": "e", "filter": "f", "arithmetic": "fixed", "metric": "m", "low": "", "high": "", "published": "", "verdict": "",
-            "reason": "", "line": "expected:1", **changes}
+    return rule(**{"arithmetic": "fixed", **changes})
 
 
 def measured(**changes):
-    return {"experiment": "e", "filter": "f", "arithmetic": "fixed", "metric": "m", "value": 1.0, "ci_lo": 0.99, "ci_hi": 1.01, "runs": 4000,
-            **changes}
+    return made(**{"arithmetic": "fixed", "value": 1.0, "ci_lo": 0.99, "ci_hi": 1.01, "runs": 4000, **changes})
 
 
 @test
 def numbers_with_chance_keep_to_exact_values_and_standard_errors():
     for paper, experiments in (("000", ("all_filters", "adaptive", "noise")), ("001", ("altitude", "altitude_shipped"))):
         rows = [row for experiment in experiments for row in rows_of(paper, experiment)]
-        expected = papers_judge.read_expected(papers.PAPERS[paper][1])
-        faults = papers_judge.judge(rows, expected, True, papers.FULL_RUNS[paper])
+        rules_of = expected(paper)
+        faults = papers_judge.judge(rows, rules_of, True, papers.FULL_RUNS[paper])
         assert faults == [], faults
         # the twin: a number moved by nine standard errors leaves its band
         held = [row for row in rows if row.get("ci_lo") is not None and None not in row.get("band", (None,))
@@ -178,16 +149,16 @@ def numbers_with_chance_keep_to_exact_values_and_standard_errors():
         of_run = papers_bands.Rows(rows)
         for row in tight[::7]:
             off = dict(row, value=row["value"] + 9 * papers_bands.standard_error(row))
-            rules = [r for r in expected if papers_judge.fits(row, r)]
+            rules = [r for r in rules_of if papers_judge.fits(row, r)]
             assert any(papers_judge.judge_row(dict(off), r, papers.FULL_RUNS[paper], of_run) for r in rules), papers_judge.name_of(row)
 
 
 @test
 def no_band_is_wider_than_its_reason_allows():
     for paper in ("000", "001", "003", "004"):
-        expected = papers_judge.read_expected(papers.PAPERS[paper][1])
-        found = [f"{rule['line']}: {papers_bands.unreasoned(rule)}" for rule in expected if papers_bands.unreasoned(rule)]
-        assert found == [] and len(expected) > 40, found
+        rules_of = expected(paper)
+        found = [f"{rule['line']}: {papers_bands.unreasoned(rule)}" for rule in rules_of if papers_bands.unreasoned(rule)]
+        assert found == [] and len(rules_of) > 40, found
     # twins: each band says less than it takes
     for rule, words in ((ruled(low="0.02", high="1.25"), "0.02 and 1.25"), (ruled(low="1", high="+-5 se"), "5 standard errors"),
                         (ruled(low="1", high="+-2 %", reason="issue: 3 %"), "2 %"), (ruled(high="0.6", reason="issue: 0.64"), "0.6"),
@@ -216,7 +187,7 @@ def bounds_may_be_other_numbers_of_the_run():
         assert (papers_judge.judge_row(dict(near, runs=runs), ruled(high=high), 4000) == []) == sound, (high, runs)
     # guarded adaptive is held to what it has unguarded in the same run, whatever that is
     rows = rows_of("000", "adaptive")
-    expected = papers_judge.read_expected(papers.PAPERS["000"][1])
+    rules_of = expected("000")
     for turn in ("ramp30", "cos60", "bump30"):
         plain = value(rows, f"adaptive_clean_{turn}", "adaptive(guard=0)", "fixed", "mse_6_10")
         for factor, sound in ((1.24, True), (1.40, False)):
@@ -224,7 +195,7 @@ def bounds_may_be_other_numbers_of_the_run():
             wanted = (f"adaptive_clean_{turn}", "adaptive(guard=3)", "mse_6_10")
             row = next(r for r in changed if (r["experiment"], r["filter"], r["metric"]) == wanted)
             row["value"] = factor * plain
-            faults = [f for f in papers_judge.judge(changed, expected, True, 4000) if f.startswith(papers_judge.name_of(row))]
+            faults = [f for f in papers_judge.judge(changed, rules_of, True, 4000) if f.startswith(papers_judge.name_of(row))]
             assert (faults == []) == sound, (turn, factor, faults)
 
 
@@ -238,83 +209,23 @@ def claims_in_words_are_judged_by_the_number():
     path = pathlib.Path("build/papers/claim.csv")
     for verdict, words in (("refuted", "needs limits for its verdict"), ("reproduced <= soon enough; refuted >= 1", "is no bound")):
         path.write_text(f"e,f,fixed,m,,,half as good,{verdict},why\n", encoding="utf-8")
-        try:
-            papers_judge.read_expected(path)
-        except papers_judge.Fault as fault:
-            assert words in str(fault) and ":1:" in str(fault), fault
-        else:
-            raise AssertionError(f"{verdict} was taken")
+        refused(lambda: papers_judge.read_expected(path), words, ":1:")
     for paper in papers.PAPERS:
-        papers_judge.read_expected(papers.PAPERS[paper][1])
+        expected(paper)
 
 
 @test
-def the_page_tells_of_adaptive_and_of_noise_as_measured():
+def cells_of_adaptive_and_of_noise_are_what_was_measured():
     rows = rows_of("000", "adaptive") + rows_of("000", "noise")
-    papers_judge.judge(rows, papers_judge.read_expected(papers.PAPERS["000"][1]), True, 4000)
+    papers_judge.judge(rows, expected("000"), True, 4000)
     table, curve, noise = (make(rows) for make in (synthesis.adaptive_table, synthesis.guard_table, synthesis.identified_table))
-    assert sum(line.startswith("| `adaptive(guard=") for line in table) == 5, table
     for turn, limit in (("ramp30", "0.280"), ("cos60", "0.440"), ("bump30", "0.500"), ("sine30", "0.640")):
         plain = value(rows, f"adaptive_clean_{turn}", "adaptive(guard=0)", "fixed", "mse_6_10")
         assert f" / {synthesis.shown(plain)} (<= {limit}) / " in table[2], (turn, table[2])
-    plain = value(rows, "adaptive_clean_ramp30", "adaptive(guard=0)", "fixed", "mse_6_10")
-    assert f"(<= {synthesis.shown(1.25 * plain)})" in table[3], table[3]
     assert [line for line in curve if "as shipped" in line][0].startswith("| `adaptive(guard=3)` | 3 sigma, as shipped | "), curve
-    assert len(curve) == 8 + 3 and len(noise) == 6 + 3, noise
     for line, experiment in zip(noise[2:], ("noise_rest_10_hz", "noise_cos60_10_hz")):
-        metrics = ("r_by_true", "exact_r_by_true", "exact_r_one_run_sd")
-        mean, exact, most = (value(rows, experiment, "noise(x)", "fixed", metric) for metric in metrics)
-        assert f"| {synthesis.shown(mean)} [" in line and f"| {synthesis.shown(exact)} |" in line and f"(<= {synthesis.shown(most)}) |" in line, line
-    # the twin: another gate as shipped is the one that is marked
-    next(r for r in rows if r["metric"] == "guard_sigma")["value"] = 4.0
-    assert [line for line in synthesis.guard_table(rows) if "as shipped" in line][0].startswith("| `adaptive(guard=4)` |")
-    # and the page has all three, under their titles
-    part = papers_page.between(papers_page.DOCUMENT.read_text(encoding="utf-8"), "000")[1]
-    headings = [heading for heading, _ in synthesis.tables_000(rows) if heading.startswith(("adaptive: ", "noise: "))]
-    assert len(headings) == 3 and all(part.count(f"### {heading}\n") == 1 for heading in headings), headings
-    # the page's number of runs; a limit that theory gives
-    assert re.search(r"^\| `noise\(x\)` \| rest 10 hz \| 0\.8\d+ \[.* \| 0\.921 \| .* \(<= 0\.361\) \|$", part, re.M), headings
-
-
-@test
-def parts_of_the_page_are_found_by_their_markers():
-    for paper in papers.PAPERS:
-        begin, end = papers_page.markers(paper)
-        assert papers_page.between(f"a{begin}b{end}c", paper) == ("a", "b", "c")
-        for broken in (f"a{end}c", f"a{begin}b{begin}{end}", f"a{begin}b"):
-            try:
-                papers_page.between(broken, paper)
-            except OSError as error:
-                assert begin in str(error)
-            else:
-                raise AssertionError(f"{broken} was taken")
-    try:
-        papers_page.no_title_twice("a page", ["### Roll", "| 1 |", "### Roll", "| 2 |"])
-    except papers.page.Fault as fault:
-        assert "a page: the title 'Roll' occurs 2 times" in str(fault)
-    else:
-        raise AssertionError("a title twice was taken")
-    assert len({marker for paper in papers.PAPERS for marker in papers_page.markers(paper)}) == 2 * len(papers.PAPERS) == 10
-
-
-@test
-def bad_words_give_one_sentence():
-    program = papers.PAPERS["000"][0][0].resolve()
-    for words, folder, sentence in ((["nothing"], ".", "paper000: 'nothing': no such experiment"),
-                                    (["roll_as_angle"], "host_tests", "sim/streams/tilt-slow.csv: cannot be read")):
-        done = subprocess.run([str(program), *words], capture_output=True, text=True, timeout=600, cwd=folder)
-        assert done.returncode == 2 and sentence in done.stderr and done.stderr.count("\n") == 1, done
-    done = subprocess.run([sys.executable, "campaigns/papers/papers.py", "--paper", "005"], capture_output=True, text=True, timeout=600)
-    assert done.returncode == 2 and "005" in done.stderr, done
-
-
-@test
-def one_paper_leaves_the_others_part_alone():
-    before = pathlib.Path("docs/papers.md").read_bytes()
-    done = subprocess.run([sys.executable, "campaigns/papers/papers.py", "--paper", "001", "--runs", "2000"], capture_output=True, text=True,
-                          timeout=600)
-    assert "page left alone" in done.stdout and pathlib.Path("docs/papers.md").read_bytes() == before, done
-    assert done.returncode == 0, done.stdout
+        mean, exact = (value(rows, experiment, "noise(x)", "fixed", metric) for metric in ("r_by_true", "exact_r_by_true"))
+        assert f"| {synthesis.shown(mean)} [" in line and f"| {synthesis.shown(exact)} |" in line, line
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ try:
 except ImportError as missing:
     sys.exit(f"test_synthesised: {missing.name} is missing: run it by `make test`")
 
-from results import PICTURES
 from system_support import run_all, test
 
 PEOPLE = pathlib.Path("docs/filters-synthesised.md")
@@ -65,12 +64,6 @@ def no_filter_with_a1_below_0_is_under_the_floor():
 @test
 def closed_tables_are_those_of_a_new_run():
     assert "\n".join(synthesised.closed_tables()).rstrip() in TEXT, "make synthesised writes the tables"
-
-
-@test
-def the_pictures_are_on_the_page():
-    shown = re.findall(r"\]\(pictures/(synthesised-\w+\.png)\)", TEXT)
-    assert sorted(shown) == sorted(path.name for path in PICTURES.glob("synthesised-*")) and len(shown) == 4, shown
 
 
 if __name__ == "__main__":

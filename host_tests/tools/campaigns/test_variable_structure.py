@@ -1,7 +1,5 @@
 """campaigns/variable_structure, the reference of paper 004: each equation against what was worked out by hand, each erratum with the printed form as
 the twin that must fail; intervals and command line. The flight and its rules: test_variable_structure_flight.py."""
-import io
-import os
 import pathlib
 import subprocess
 import sys
@@ -12,7 +10,7 @@ from system_support import needs, run_all, test
 needs("papers", "numpy")
 
 import numpy as np  # noqa: E402
-from variable_structure import experiments, intervals, observability, organisation, program, scenario, trends  # noqa: E402
+from variable_structure import experiments, intervals, observability, organisation, scenario, trends  # noqa: E402
 from variable_structure.rules import INVERSE  # noqa: E402
 
 G, RE = 9.81, 6.371e6
@@ -25,7 +23,7 @@ def near(found, wanted, relative=1e-12):
 def refused(function, words):
     try:
         function()
-    except (ValueError, program.Refused) as error:
+    except ValueError as error:
         assert words in str(error), error
     else:
         raise AssertionError(f"taken; wanted: {words}")
@@ -216,51 +214,20 @@ def intervals_are_those_of_the_tables():
     assert intervals.pooled_median(np.tile(np.arange(5.0), (7, 1)), 1) == (2.0, 2.0, 2.0)
 
 
-def printed(*words):
-    out = io.StringIO()
-    assert program.main(list(words), out) == 0
-    return out.getvalue()
-
-
 @test
-def the_program_prints_the_same_again_for_a_seed():
-    words = ("next_window_stuck_at_zero", "--runs", "200", "--seed")
-    first = printed(*words, "3")
-    assert first == printed(*words, "3") != printed(*words, "4")
-    lines = [line.split("\t") for line in first.splitlines()]
-    assert {len(cells) for cells in lines if cells[0] == "row"} == {9} and {cells[0] for cells in lines} == {"row", "progress"}
-    assert [float(cells[1]) for cells in lines if cells[0] == "progress"][-1] == 1.0
-    assert len(printed("--list").splitlines()) == len(experiments.EXPERIMENTS)
-
-
-@test
-def bad_words_are_named():
+def a_seed_gives_the_same_numbers_again():
+    first, again, other = (list(experiments.EXPERIMENTS["next_window_stuck_at_zero"][1](200, seed)) for seed in (3, 3, 4))
+    assert first == again != other
     refused(lambda: scenario.fly(1, 1, "half"), "zero or last, not 'half'")
-    for words, sentence in ((["nothing"], "'nothing': no such experiment"), ([], "names no experiment"),
-                            (["--nothing"], "--nothing: unknown option; the experiment stands first"), (["--list", "x"], "x: --list stands alone"),
-                            (["trends", "--runs", "0"], "--runs: takes a whole number from 1"),
-                            (["trends", "--seed"], "--seed: takes a whole number"),
-                            (["trends", "--runs", "1e3"], "--runs: takes"), (["trends", "--hurry", "1"], "--hurry: unknown option")):
-        refused(lambda: program.run(words, io.StringIO()), sentence)
 
 
 @test
-def help_is_a_usage_with_every_option():
-    for words in (["--help"], ["-h"], ["trends", "--help"]):
-        text = printed(*words)
-        assert text.startswith("usage: python campaigns/variable_structure"), text
-        assert all(word in text for word in ("--list", "--runs", "--seed", "--help")), text
-
-
-@test
-def it_runs_as_a_module_and_as_a_folder():
-    for words in (["-m", "variable_structure"], ["campaigns/variable_structure"]):
-        def said(*more):
-            done = subprocess.run([sys.executable, "-B", *words, *more], capture_output=True, text=True, check=False,
-                                  env={**os.environ, "PYTHONPATH": "campaigns"})
-            return done.returncode, done.stdout, done.stderr
-        assert said("--help") == (0, program.USAGE, "")
-        assert said("--hurry") == (2, "", "variable_structure: --hurry: unknown option; the experiment stands first (--help)\n")
+def the_program_prints_rows_and_refuses_a_number_of_runs_that_is_none():
+    for words, status, count in ((["observability"], 0, 4), (["--list"], 0, 8), (["observability", "--runs", "0"], 2, 0), (["nothing"], 2, 0)):
+        done = subprocess.run([sys.executable, "campaigns/variable_structure", *words], capture_output=True, text=True, check=False)
+        assert (done.returncode, len(done.stdout.splitlines())) == (status, count), done
+    done = subprocess.run([sys.executable, "campaigns/variable_structure", "observability"], capture_output=True, text=True, check=False)
+    assert "row\tobservability\tchannel\tdouble\tsum_a2_1\t1\t\t\t1\n" in done.stdout, done
 
 
 @test

@@ -146,7 +146,7 @@ def without_a_choice_errors_are_those_of_the_second_moments():
 
 @test
 def linear_predictions_miss_by_their_second_moments():
-    rows = {(name, metric): (value, made) for name, metric, value, made in experiments.trends(20 * FLIGHTS, SEED, lambda part: None)}
+    rows = {(name, metric): (value, made) for name, metric, value, made in experiments.trends(20 * FLIGHTS, SEED)}
     for name in ("hold", "linear", "linear_separate", "model"):
         found, exact = rows[name, "mse"][0], rows[name, "exact_mse"][0]
         assert abs(found.value - exact) < 4 * (found.high - found.low) / 3.92, (name, found, exact)

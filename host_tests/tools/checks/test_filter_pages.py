@@ -1,5 +1,5 @@
 """The pages on the filters, written by hand: a measured number is that of the results (filter_pages.csv) or of the test beside it, a default
-that of the library, an image what make builds; links lead somewhere, tests that are named exist, and the pages stay short."""
+that of the library, an image what make builds; tests that are named exist, and the pages stay short."""
 import pathlib
 import re
 import subprocess
@@ -183,34 +183,7 @@ def the_example_is_what_the_synthesiser_prints():
         assert line in printed, line
 
 
-# --- links and tests --------------------------------------------------------------------------------------------------
-
-
-def anchors(path):
-    """The headings of a page as GitHub links to them."""
-    seen, found = {}, set()
-    for heading in re.findall(r"^#+ (.*)$", path.read_text(encoding="utf-8"), re.M):
-        anchor = re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
-        found.add(f"{anchor}-{seen[anchor]}" if anchor in seen else anchor)
-        seen[anchor] = seen.get(anchor, 0) + 1
-    return found
-
-
-def broken(path, text):
-    """Links of a page that lead nowhere."""
-    for target in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"```.*?```", "", text, flags=re.S)):
-        name, _, anchor = target.partition("#")
-        file = path.parent / name if name else path
-        if not name.startswith("http") and (not file.exists() or (anchor and anchor not in anchors(file))):
-            yield target
-
-
-@test
-def every_link_leads_somewhere():
-    pages = [*(DOCS / f"{name}.md" for name in WORDS), *sorted(results.FOLDER.glob("*.md"))]
-    for path in pages:
-        assert list(broken(path, path.read_text(encoding="utf-8"))) == [], f"{path}: {list(broken(path, path.read_text(encoding='utf-8')))}"
-    assert list(broken(pages[0], "[a](filters-gated.md#no-such) [b](nowhere.md) [c](tools.md)")) == ["filters-gated.md#no-such", "nowhere.md"]
+# --- tests -----------------------------------------------------------------------------------------------------------
 
 
 @test

@@ -1,5 +1,5 @@
-"""Pages that commands write: a number of docs/results/recordings.md that does not come out again is named, every time; a title that stands twice is
-refused; the page of navigation. And the list of what make proof does not prove."""
+"""Pages that commands write: a title that stands twice is refused; the cells of the page of navigation. And the list of what make proof does not
+prove."""
 import contextlib
 import io
 import pathlib
@@ -7,61 +7,14 @@ import re
 import sys
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-from laws import PLAIN, ROBUST  # noqa: E402
-import page
 import page_navigation
 import page_sources
 import proof
-import recordings
 import results
 
 from system_support import run_all, test
 
 OUT = pathlib.Path("build/pages-test")
-COUNTS = "1000,20,1,0,30,0,900,0,0.5,0,0,0.0"
-
-
-def told(status=0, gated_farthest="12.0"):
-    """The rows of host_tests/tools/campaigns/recordings.c for one recording and two filters."""
-    lines = ["stream,walk,100.0,16,100.0,1000,0,0,0,0"]
-    for kind, farthest in ((PLAIN, "3.0"), (ROBUST, gated_farthest)):
-        for axis in "xyz":
-            lines.append(f"filter,walk,{kind},{axis},{COUNTS},10,{farthest}")
-            lines.append(f"rest,walk,0,{kind},{axis},{COUNTS},0,0.0")
-        for pool in ("at rest", "moving"):
-            lines.append(f"fault,{pool},bad reads 1e-3,{kind},0.001,1.500,2.500,1.500,2.500,1.500")
-    lines += [f"tails,walk,0,{axis},1000,2.00,0.01,0.001" for axis in "xyz"]
-    program = OUT / "program.sh"
-    said = "echo 'recordings: walk: cannot open' >&2\n" if status == recordings.SAID else ""
-    program.write_text(f"#!/bin/sh\n{said}cat <<'END'\n" + "\n".join(lines) + f"\nEND\nexit {status}\n", encoding="ascii")
-    program.chmod(0o755)
-    return str(program.resolve())
-
-
-def run_of(**arguments):
-    """(status, what it prints) of make recordings' command with that program and a page of its own."""
-    recordings.PROGRAM = told(**arguments)
-    text = io.StringIO()
-    with contextlib.redirect_stderr(text), contextlib.redirect_stdout(text):
-        try:
-            status = recordings.main()
-        except SystemExit as end:
-            status = end.code
-    return status, text.getvalue()
-
-
-@contextlib.contextmanager
-def own_page():
-    OUT.mkdir(parents=True, exist_ok=True)
-    kept = recordings.DOCUMENT, recordings.PAGE, recordings.CSV, recordings.PROGRAM, results.KEPT
-    recordings.DOCUMENT, recordings.CSV, results.KEPT = OUT.resolve() / "page.md", OUT / "rows.csv", OUT / "kept"
-    recordings.PAGE = results.Results(recordings.DOCUMENT, "Of the test", "make recordings", "What.")
-    for path in (recordings.DOCUMENT, *results.KEPT.glob("*")):
-        path.unlink(missing_ok=True)
-    try:
-        yield recordings.DOCUMENT
-    finally:
-        recordings.DOCUMENT, recordings.PAGE, recordings.CSV, recordings.PROGRAM, results.KEPT = kept
 
 
 @test
@@ -70,39 +23,15 @@ def no_page_has_a_title_twice():
         text = pathlib.Path(name).read_text(encoding="utf-8")
         parts = re.findall(r"<!-- written by [^>]*begin -->\n(.*?)<!-- written by [^>]*end -->", text, re.S)
         for part in [text] if pathlib.Path(name).parent == results.FOLDER else parts:
-            page.no_title_twice(name, part.splitlines())
+            results.no_title_twice(name, part.splitlines())
     # the twin: a doubled table is named
     lines = ["### Roll", "", "| a | b |", "|---|---|", "| x | 1 |", "", "### Roll", "", "| a | b |", "|---|---|", "| x | 2 |"]
     try:
-        page.no_title_twice("docs/any.md", lines)
-    except page.Fault as fault:
+        results.no_title_twice("docs/any.md", lines)
+    except results.Fault as fault:
         assert str(fault) == "docs/any.md: the title 'Roll' occurs 2 times", fault
     else:
         raise AssertionError("a title twice was taken")
-
-
-@test
-def what_does_not_come_out_again_is_named_by_every_run():
-    with own_page() as document:
-        assert run_of()[0] == 0  # there was no page before
-        written = document.read_text(encoding="utf-8")
-        assert written.startswith("# Of the test\nWritten by `make recordings`; do not edit it.\n<!-- sources: none -->\n"), written
-        document.write_text(written + "\n", encoding="utf-8")  # a page of its own, as if it had been shipped
-        assert run_of()[0] == 0
-        for _ in range(2):
-            status, text = run_of(gated_farthest="34.0")
-            assert status == 1 and "0 passed, 1 failed" in text, text
-            assert f"walk, `{ROBUST}`: 1; 12 on the page, 1; 34 in this run" in text, text
-        assert document.read_text(encoding="utf-8") == written.replace("1; 12 |", "1; 34 |")
-
-
-@test
-def a_failure_is_told_once():
-    with own_page() as document:
-        status, text = run_of(status=recordings.SAID)
-        assert status == recordings.SAID and text == "" and not document.exists(), text
-        status, text = run_of(status=1)
-        assert status == 1 and "an estimate left its bounds" in text, text
 
 
 CHIP = """call init: 1, mean 9000, most 9000 cycles
@@ -137,7 +66,7 @@ def the_page_of_navigation_holds_what_its_programs_say():
     for cut in (CHIP.rpartition("load")[0], CHIP.replace("call gps", "gps call:")):
         try:
             page_navigation.chip_rows(cut, 12)
-        except page.Fault as fault:
+        except results.Fault as fault:
             assert str(fault) == "nav_chip_12: it did not run to its end", fault
         else:
             raise AssertionError("a run that was cut short was taken")

@@ -1,7 +1,7 @@
-"""The tables of docs/papers.md for paper 004, written by make papers between its markers."""
+"""The tables of docs/papers.md for paper 004."""
 from papers_page import grid, verdicts
-from papers_page_synthesis import text_of
 
+CHANCE_FREE = ("observability",)
 FLIGHTS = (("windows_stuck_at_zero", "Frozen output is zero: the window's own data choose"),
            ("windows_frozen_at_last", "Frozen output is the last value: the window's own data choose"),
            ("next_window_stuck_at_zero", "Frozen output is zero: the window before chooses"),
@@ -14,7 +14,11 @@ COLUMNS = (("rms of dV in m/s, median", "rms_median"), ("95 % of the runs", "rms
 PHASES = ("still", "ramp", "sine", "vibration", "drop", "burst", "acceleration", "mixed")
 
 
-def tables_004(rows):
+def runs_of(runs):
+    return f"{runs // 20:,} flights of each kind"
+
+
+def tables(rows):
     """(heading, lines)."""
     yield "Beside the paper", verdicts(rows)
     yield "The channel of the inertial system: (9) to (12)", grid(rows, [
@@ -29,7 +33,3 @@ def tables_004(rows):
     yield "On the board: `auto` over filters tuned on other runs", grid(rows, [
         (f"over {name.replace('_', ' ')}", "board_phases", [f"over_{name}"])
         for name in ("sprf_fixed", "sprf_guarded_double", "pbf_fixed", "pbf_double")], intervals=True)
-
-
-def page_text_004(rows, options):
-    return text_of(f"{options.runs // 20:,} flights of each kind, seed {options.seed}.", tables_004(rows))

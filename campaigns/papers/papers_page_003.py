@@ -1,7 +1,7 @@
-"""The tables of docs/papers.md for paper 003, written by make papers between its markers."""
+"""The tables of docs/papers.md for paper 003."""
 from papers_page import grid, verdicts
-from papers_page_synthesis import text_of
 
+CHANCE_FREE = ("tau", "covariance")
 STATES = ("position_n", "position_e", "position_d", "velocity_n", "velocity_e", "velocity_d", "attitude_n", "attitude_e", "attitude_d",
           "drift_x", "drift_y", "drift_z")
 TAU = tuple(f"tau_{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
@@ -11,7 +11,11 @@ ERRORS = (("heading 40..160 s, degrees", "heading_40_160"), ("without GPS", "hea
 LOOPS = (("closed_loop", "Closed loop, nav/lib with its queue"), ("closed_loop_100_hz", "Closed loop, the field at 100 Hz, all scalars at once"))
 
 
-def tables_003(rows):
+def runs_of(runs):
+    return f"{min(20, runs // 200)} flights of each kind"
+
+
+def tables(rows):
     """(heading, lines)."""
     yield "Beside the paper", verdicts(rows)
     yield "tau (3.34) of 17818, 1951, 41847 nT", grid(rows, [(name.replace("_", " "), "tau", [name]) for name in TAU])
@@ -23,7 +27,3 @@ def tables_003(rows):
     for experiment, title in LOOPS:
         yield f"{title}: median of the largest error of a flight", grid(rows, [
             (column, experiment, [metric]) for column, metric in ERRORS], intervals=True)
-
-
-def page_text_003(rows, options):
-    return text_of(f"{min(20, options.runs // 200)} flights of each kind, seed {options.seed}.", tables_003(rows))

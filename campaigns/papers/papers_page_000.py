@@ -1,4 +1,4 @@
-"""The tables of docs/papers.md for papers 000 and 001, written by make papers between their markers."""
+"""The tables of docs/papers.md for paper 000."""
 import fnmatch
 
 from papers_page import grid, pick, shown, table, verdicts, with_interval
@@ -15,7 +15,7 @@ ADAPTIVE_TURNS = ("ramp30", "cos60", "bump30", "sine30")
 ADAPTIVE_KINDS = (("clean", "clean"), ("5_percent", "5 % with 20 times the noise"), ("15_percent", "15 %"),
                   ("shift_20_sigma", "5 % shifted by 20 sigma to either side"))
 # experiments without chance: their tables are the same for every seed and number of runs
-CHANCE_FREE = {"000": ("schedule_*", "algorithm_22_*", "table1_*", "equal_noise*", "roll_tilt-*", "roll_through-*"), "001": ("altitude_kalman",)}
+CHANCE_FREE = ("schedule_*", "algorithm_22_*", "table1_*", "equal_noise*", "roll_tilt-*", "roll_through-*")
 
 
 def windows(prefix="mse", names=("0_5", "6_10", "11_15")):
@@ -107,7 +107,11 @@ def equal_noise_tables(rows):
         ("most", "equal_noise_all", ["bias2_ratio_most"])])
 
 
-def tables_000(rows):
+def runs_of(runs):
+    return f"{runs * 2 // 5:,} runs of each experiment with chance"
+
+
+def tables(rows):
     """(heading, lines)."""
     yield "Beside the paper", verdicts(rows)
     yield "Gains of (22) without data: the paper's 15 s, and after 8,000 steps", schedule_table(rows)
@@ -134,50 +138,3 @@ def tables_000(rows):
             (region.replace("_", " "), f"roll_{stream}", [f"rmse_{region}_{way}" for way in WAYS])
             for region in ("open", "near_90", "near_180", "all")
             if pick(rows, f"roll_{stream}", "unfiltered", "double", f"rmse_{region}_axes")])
-
-
-def tables_001(rows):
-    yield "Beside the paper", verdicts(rows)
-    for name, title in (("altitude_half_a_t2", "x = a t^2 / 2"), ("altitude_a_t2", "x = a t^2")):
-        yield f"{title}: metres", grid(rows, [
-            ("sigma, straight legs", name, ["sigma"]), ("of one run +-", name, ["sigma_one_run_sd"]), ("sigma, 10-20 s", name, ["sigma_stationary"]),
-            ("mean error 20-35 s", name, ["lag_20_35"]), ("35-50 s", name, ["lag_35_50"]), ("settled, 30-35 s", name, ["lag_settled"]),
-            ("largest without noise", name, ["peak_bias"])])
-    yield "Kalman filters, solved for the published lag or sigma", grid(rows, [
-        (metric, "altitude_kalman", [metric]) for metric in ("alpha", "beta", "gamma", "q")])
-
-
-def text_of(head, parts):
-    lines = [head, ""]
-    for heading, part in parts:
-        if any(line.startswith("| `") for line in part):
-            lines += [f"### {heading}", "", *part]
-    return "\n".join(lines)
-
-
-def page_text_000(rows, options):
-    return text_of(f"{options.runs * 2 // 5:,} runs of each experiment with chance, seed {options.seed}.", tables_000(rows))
-
-
-def page_text_001(rows, options):
-    return text_of(f"{options.runs // 5:,} runs, seed {options.seed}.", tables_001(rows))
-
-
-def chance_free(paper, line):
-    """Of a line under "Beside the paper"."""
-    cells = line.split(" | ")
-    return len(cells) > 2 and any(fnmatch.fnmatchcase(cells[2].replace(" ", "_"), p) for p in CHANCE_FREE[paper])
-
-
-def stale(paper, rows, part):
-    """Lines that the rows without chance, judged, give and the page's part lacks, and such that it has beyond them. In double: a filter
-    that is added to FILTER_LIST adds lines of fixed point, which make papers then writes."""
-    tables = list({"000": tables_000, "001": tables_001}[paper](rows))
-    made = [line for heading, lines in tables for line in lines if line.startswith("| `") and "| fixed |" not in line]
-    titles = [heading for heading, lines in tables if any(line.startswith("| `") for line in lines) and heading != "Beside the paper"]
-    held, heading = [], ""
-    for line in part.splitlines():
-        heading = line[4:] if line.startswith("### ") else heading
-        if line.startswith("| `") and "| fixed |" not in line and (heading in titles or (heading == "Beside the paper" and chance_free(paper, line))):
-            held.append(line)
-    return [f"the page lacks: {line}" for line in made if line not in held] + [f"the page has: {line}" for line in held if line not in made]

@@ -1,0 +1,81 @@
+"""The tables of docs/papers.md for paper 002."""
+from laws import ROBUST
+from papers_page import grid, pick, table, verdicts
+
+CHANCE_FREE = ("covariance", "steady_gain", "table2", "operations")
+STEPS = ("1..5", "5", "10", "20", "50", "100", "5..100")
+FACTORS = ("1/16", "1/4", "1/2", "1", "2", "4", "16")
+LOCKOUT_NOTE = ('"Not back" means not within the limit: P widens the gate of `sprf_paper` too slowly, and a sample taken by chance '
+                "closes it again.")
+GATES = ("1", "2", "2.5", "3", "3.5", "4")
+
+
+def runs_of(runs):
+    return f"{runs:,} runs per experiment ({10 * runs:,} trials for lock-out)"
+
+
+def starts_alike(row):
+    """Not where the reference of sprf_paper begins with Table 1's estimate and the shipped code with its first sample."""
+    return not (row["filter"].startswith("sprf_paper") and row["experiment"] in ("median_start", "shipped_start") and
+                (row["arithmetic"] == "double" or row["metric"].endswith("by_double")))
+
+
+def efficiency(rows):
+    part, rows = [], [row for row in rows if starts_alike(row)]
+    for title, experiment in (("Start of Table 1", "table1_start"), ("Start of Table 1, first sample no outlier", "first_sample_clean"),
+                              ("Median of five, the rate as in Table 1", "median_start"), ("As shipped at 40.5 Hz", "shipped_start")):
+        part += [f"**{title}**", "", *grid(rows, [
+            ("steady", experiment, ["k_ef_steady"]), ("steady, median of groups of 50 [5 %, 95 %]", experiment, ["k_ef_steady_median_of_50"]),
+            ("k = 6..60", experiment, ["k_ef_transient_6_60"]), ("k = 1..60", experiment, ["k_ef_transient"]),
+            ("k = 1..60, median of groups of 50 [5 %, 95 %]", experiment, ["k_ef_transient_median_of_50"]),
+            ("locked out", experiment, ["lockout_rate"])], intervals=True)]
+    return part
+
+
+def table_2(rows):
+    """Ours, the most of any sample, beside the paper's three columns."""
+    names = list(dict.fromkeys(r["filter"] for r in rows if r["experiment"] == "operations"))
+    lines = []
+    for name in names:
+        cells = []
+        for metric in ("multiplications_most", "additions_most", "memory_cells"):
+            row = pick(rows, "operations", name, "fixed", metric)
+            cells += [f"{row['value']:g}" if row else "", (row or {}).get("published") or "-"]
+        lines.append([f"`{name}`", *cells])
+    return table(["filter", "multiplications", "paper", "additions", "paper", "bytes / 4", "paper's cells"], lines)
+
+
+def tables(rows):
+    """(heading, lines) of the page."""
+    back = ["reacq_median", "reacq_p95"]
+    yield "Beside the paper", verdicts(rows)
+    yield "K_ef: mean square error of the Kalman filter over that of the filter", efficiency(rows)
+    yield "Steady K_ef of fixed point by that of double, same runs", grid([r for r in rows if starts_alike(r)], [
+        (title, experiment, ["k_ef_steady_by_double"]) for title, experiment in (
+            ("Start of Table 1", "table1_start"), ("first sample no outlier", "first_sample_clean"), ("median of five", "median_start"),
+            ("as shipped", "shipped_start"))])
+    yield "Equations as printed: K_ef from the start of Table 1", grid(rows, [
+        ("steady", "printed", ["k_ef_steady"]), ("k = 1..60", "printed", ["k_ef_transient"]),
+        ("steady, first sample no outlier", "printed_first_sample_clean", ["k_ef_steady"]),
+        ("k = 1..60, first sample no outlier", "printed_first_sample_clean", ["k_ef_transient"])], intervals=True)
+    yield "Without outliers: the Kalman filter's mean square error over the filter's", grid(
+        rows, [("efficiency", "clean", ["clean_efficiency"])], intervals=True)
+    yield "Width of the gate in sigma: false alarms / misses (first sample no outlier)", grid(
+        [r for r in rows if r["filter"] == ROBUST], [(g, f"gate_{g}_sigma", ["false_alarm", "miss"]) for g in GATES])
+    yield "Width of the gate in sigma: K_ef", grid(rows, [(g, f"gate_{g}_sigma", ["k_ef_steady"]) for g in GATES])
+    yield "Samples until back after a step of so many sigma, no outliers: median / 95 %", grid(
+        rows, [(s, f"step_clean_{s}_sigma", back) for s in STEPS])
+    yield "The same with 15 % outliers", grid(rows, [(s, f"step_15_percent_{s}_sigma", back) for s in STEPS])
+    yield "Bursts of outliers on clean data", grid(rows, [(f"{n}: {title}", f"burst_{n}", metrics) for n in (10, 30) for title, metrics in (
+        ("peak error in steady sigmas, median / 95 %", ["peak_error_sigma_median", "peak_error_sigma_p95"]),
+        ("samples until back, 95 %", ["recovery_p95"]))])
+    yield "Steady K_ef with R wrong by a factor (first sample no outlier)", grid(rows, [(f, f"wrong_r_{f}", ["k_ef_steady"]) for f in FACTORS])
+    yield "Lock-out: steps of 1 to 100 sigma in a random phase, 0 to 30 % outliers", [LOCKOUT_NOTE, "", *grid(rows, [
+        (title, "lockout", [metric]) for title, metric in (
+            ("limit, samples", "limit_samples"), ("trials not back", "not_back"), ("99.9 %", "samples_p999"),
+            ("worst", "samples_worst"))])]
+    yield "Table 2: most operations per sample, and the state", table_2(rows)
+    yield "Operations per sample of the shipped code, counted: median / most", grid(rows, [
+        (title, "operations", [metric, f"{metric}_most"]) for title, metric in (
+            ("multiplications", "multiplications"), ("additions", "additions"), ("reciprocals", "divisions"))])
+    yield "Gain at rest; fixed point by double", grid(rows, [("gain", "steady_gain", ["gain"]), ("by double", "steady_gain", ["gain_by_double"])])

@@ -1,0 +1,10 @@
+"""python campaigns/resilience --list | EXPERIMENT [--runs N] [--seed N]: the experiments of paper 002, from any folder."""
+import pathlib
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / folder) for folder in (ROOT / "mk/pythonpath").read_text(encoding="ascii").split()]
+from launched import run  # noqa: E402
+
+if __name__ == "__main__":
+    run("campaigns/resilience", "program", "papers")
