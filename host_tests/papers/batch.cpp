@@ -238,8 +238,8 @@ void batch_linear(const double *f, const double *gains, int changing, double x0,
     }
 }
 
-// The synthesised filter (7), from x0 or where that is not a number from the first sample. Gains a1, b0: constant, or of
-// each step after the first sample, which then is taken as it is.
+// The synthesised filter (7), from x0 or where that is not a number from the first sample. Gains a1, b0: constant, or
+// of each step after the first sample, which then is taken as it is.
 void batch_synthesised(const double *gains, int changing, double x0, int runs, int samples, const double *z, double *x)
 {
     for (int run = 0; run < runs; run++) {

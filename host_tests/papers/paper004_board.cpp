@@ -1,5 +1,5 @@
-// paper004_board --list | EXPERIMENT [--runs N] [--seed N]: what of paper 004 runs on the board, the supervisor `auto` on
-// tilt streams of sixteen phases, beside the filters that it is to beat.
+// paper004_board --list | EXPERIMENT [--runs N] [--seed N]: what of paper 004 runs on the board, the supervisor `auto`
+// on tilt streams of sixteen phases, beside the filters that it is to beat.
 #include "report.hpp"
 
 extern "C" {
