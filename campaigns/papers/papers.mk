@@ -18,7 +18,7 @@ BATCH := $(P)/libbatch.so
 $(BATCH): $(addprefix $(P)/host_tests/,papers/batch.o papers/contest.o $(addprefix reference/,noise.o robust.o synthesis.o)) $(PAPERS_OBJ)
 	@$(HOST_CXX) -shared $^ -lm -o $@
 
-$(P)/paper004_board: $(addprefix $(P)/host_tests/papers/,paper004_board.o board_phases.o) $(PROGRAM) $(PAPERS_OBJ)
+$(P)/paper004_board: $(P)/host_tests/papers/paper004_board.o $(PROGRAM) $(PAPERS_OBJ)
 	@$(HOST_CXX) $^ -lm -o $@
 
 # paper 003 asks nav/lib, not the filters

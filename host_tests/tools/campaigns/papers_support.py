@@ -58,11 +58,11 @@ def refused(function, *words):
         raise AssertionError(f"taken; wanted: {words}")
 
 
-def changed_are_found(paper, rows, changes):
+def changed_are_found(paper, rows, arithmetic, changes):
     """Each (filter, metric, factor) makes a number that the judge names; the rows as they are have no fault."""
     assert faults_of(paper, copy.deepcopy(rows)) == []
     for name, metric, factor in changes:
         changed = copy.deepcopy(rows)
-        row = next(r for r in changed if (r["filter"], r["metric"]) == (name, metric) and r["arithmetic"] != "double" * (paper == "003"))
+        row = next(r for r in changed if (r["filter"], r["metric"], r["arithmetic"]) == (name, metric, arithmetic))
         row["value"] *= factor
         assert any(fault.startswith(papers_judge.name_of(row)) for fault in faults_of(paper, changed)), papers_judge.name_of(row)

@@ -179,8 +179,8 @@ def a_number_that_is_not_finite_is_null_in_the_json():
 def paper_004_is_judged_and_its_twins_are_named():
     rows = rows_of("004", "windows_stuck_at_zero") + rows_of("004", "observability")
     # the degree of observability alone with the acceptor's numbers, and a fixed sensor with more noise than the second moments allow
-    changed_are_found("004", rows, (("degree_only", "rms_median", 0.5), ("gate_then_degree", "rms_median", 4.0), ("fixed_1", "mse", 1.6),
-                                    ("channel", "sum_a2_2", 1.001), ("trend_acceptor", "best_sensor", 0.7)))
+    changed_are_found("004", rows, "double", (("degree_only", "rms_median", 0.5), ("gate_then_degree", "rms_median", 4.0), ("fixed_1", "mse", 1.6),
+                                              ("channel", "sum_a2_2", 1.001), ("trend_acceptor", "best_sensor", 0.7)))
     refused(lambda: rows_of("004", "nothing"), "nothing")
 
 
@@ -189,7 +189,7 @@ def paper_003_has_rows_in_float():
     rows = rows_of("003", "tau", 1) + rows_of("003", "closed_loop")
     assert {row["arithmetic"] for row in rows} == {"double", "float"}
     # an element of tau wrong by 1e-6 in float, a heading ten times worse
-    changed_are_found("003", rows, (("lib_nav", "tau_22", 1 + 1e-6), ("12_states_drift(q1:10_hz)", "heading_without_gps", 10.0)))
+    changed_are_found("003", rows, "float", (("lib_nav", "tau_22", 1 + 1e-6), ("12_states_drift(q1:10_hz)", "heading_without_gps", 10.0)))
     # a rule of both is of double and fixed point
     tau = {"filter": "lib_nav", "experiment": "tau", "metric": "tau_22"}
     assert [papers_judge.fits(made(**tau, arithmetic=a), rule(**tau, arithmetic="both")) for a in papers_judge.ARITHMETICS] == [True, False, True]
