@@ -3,7 +3,13 @@ tilt:
 	@sh tools/deps.sh tilt
 	@echo "tilt: build/venv/bin/tilt --help"
 
-.PHONY: tilt
+## pictures: take docs/live.png again, from the firmware as it is in the simulator (30 s; needs Chromium)
+pictures: $(U)/firmware.elf $(S)/simrun
+	@sh tools/deps.sh tilt
+	@sh tools/deps.sh live
+	@$(PY) host_tests/tools/tilt/live_picture.py
+
+.PHONY: tilt pictures
 
 # the sample path and all filters for `tilt replay`, `compare` and `tune`, which build it if it is missing or older than its sources; a new
 # compiler's warnings must not break it: check-compile judges warnings
