@@ -1,8 +1,8 @@
-"""night_page.py PAGE STEP PASSED FAILED SKIPPED SECONDS: puts what a step of `make nightly` came to into a page, with the commit that it judged.
-Rows of other steps stay: each is of that step's last whole run."""
+"""night_page.py PAGE COMMIT STEP PASSED FAILED SKIPPED SECONDS: puts the result of a step of `make nightly` into a page, with the commit that it
+judged. Rows of other steps stay: each is of that step's last whole run."""
+import os
 import pathlib
 import re
-import subprocess
 import sys
 
 STEPS = pathlib.Path("campaigns/nightly.sh")
@@ -28,26 +28,21 @@ def rows(text):
     return {step.strip("`"): tuple(cells) for step, *cells in lines}
 
 
-def commit():
-    def git(*words):
-        return subprocess.run(["git", *words], capture_output=True, text=True, check=False).stdout.strip()
-    changes = git("status", "--porcelain", "--", ".", ":!docs/results", ":!docs/papers.md")
-    return (git("rev-parse", "--short=8", "HEAD") or "no git") + ("+" if changes else "")
-
-
 def page(text, step, result):
-    """The page with this step's row; rows of what is no step any more are left out."""
+    """The page with this step's row; rows of steps that are gone are left out."""
     have = {**rows(text), step: result}
     lines = [f"| `{name}` | {' | '.join(have.get(name, NEVER))} |\n" for name in steps()]
     return HEAD + "".join(lines)
 
 
-def main(path, step, passed, failed, skipped, seconds):
+def main(path, commit, step, passed, failed, skipped, seconds):
     if step not in steps():
         sys.exit(f"night_page: {STEPS} has no step '{step}'")
     path = pathlib.Path(path)
     text = path.read_text(encoding="utf-8") if path.exists() else ""
-    path.write_text(page(text, step, (commit(), passed, failed, skipped, f"{int(seconds) / 60:.1f}")), encoding="utf-8")
+    new = path.with_suffix(".new")  # an interrupted night leaves a whole page
+    new.write_text(page(text, step, (commit, passed, failed, skipped, f"{int(seconds) / 60:.1f}")), encoding="utf-8")
+    os.replace(new, path)
 
 
 if __name__ == "__main__":

@@ -7,17 +7,35 @@ cd "$(dirname "$0")/.." || exit 1
 who=nightly
 . campaigns/steps.sh || exit 1
 
+# what was typed behind make, or is in the environment, makes no step smaller
+unset MAKEFLAGS MAKEOVERRIDES MFLAGS SAMPLE ONLY RUNS CHANGED BREAKAGES PLANTED PART PROFILES PATIENCE STOP_AFTER RECORDINGS
+only=${STEPS:-}
+unset STEPS
+judged=''
+
+# with a + when something that counts is not committed
+commit_now() {
+    local found
+    found=$(git rev-parse --short=8 HEAD 2> /dev/null) || { echo 'no git'; return; }
+    [ -z "$(git status --porcelain -- . ':!docs/results' ':!docs/papers.md')" ] || found+=+
+    echo "$found"
+}
+
 wanted() {
-    [ -z "${STEPS:-}" ] || [[ " $STEPS " == *" $1 "* ]]
+    [ -z "$only" ] || [[ " $only " == *" $1 "* ]] || return 1
+    judged=$(commit_now)
 }
 
 after_step() {
-    python3 campaigns/night_page.py "${NIGHT_PAGE:-docs/results/nightly.md}" "$@"
+    python3 campaigns/night_page.py "${NIGHT_PAGE:-docs/results/nightly.md}" "$judged" "$@"
 }
 
-for name in ${STEPS:-}; do
-    grep -qE "^(step|counted) $name( |\$)" campaigns/nightly.sh || { echo "nightly: STEPS names what is no step: $name" >&2; exit 1; }
+names=$(sed -nE 's/^(step|counted) ([a-z-]+).*/\2/p' campaigns/nightly.sh | sort -u)
+for name in $only; do
+    grep -qxF -- "$name" <<< "$names" || { echo "nightly: STEPS: no step $name; choose from: $(echo $names)" >&2; exit 1; }
 done
+# a whole night judges every mutant again; `make nightly STEPS=mutants` and `make mutants` go on where they were stopped
+[ -n "$only" ] || rm -f build/mutants/results.jsonl
 
 step check-pages STRICT=yes
 counted test

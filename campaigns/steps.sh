@@ -6,18 +6,26 @@ failed=0
 skipped=0
 must_count=no
 limit_s=0
+all_limits_s=0
 steps=()
 
-# what a script may have otherwise: which steps it takes, and what it does with a result (step, passed, failed, skipped, seconds)
+if ! [[ ${SLOWER:-1} =~ ^[1-9][0-9]?$ ]]; then
+    echo "$who: SLOWER=$SLOWER: how many times as long this machine takes, a whole number from 1 to 99" >&2
+    exit 1
+fi
+
+# hooks that a script may replace: whether to take a step, what to do with its result (step, passed, failed, skipped, seconds), and the clock
 wanted() { true; }
 after_step() { true; }
+elapsed() { echo $((SECONDS - $1)); }
 
 # half over the budget of this step
 over_budget() {
     [ "$limit_s" -gt 0 ] && [ $((2 * $1)) -gt $((3 * limit_s * ${SLOWER:-1})) ]
 }
 
-# the tests and failures that a step counts itself in its last line "N passed, N failed", else one for the step; a failed step is never 0
+# Counts the tests and failures that a step reports in its last line "N passed, N failed"; without that line, one for the step, or none where
+# it reports what it skipped. A failed step is never 0.
 step() {
     wanted "$1" || return 0
     local began=$SECONDS took
@@ -25,31 +33,33 @@ step() {
     local status=${PIPESTATUS[0]}
     local good bad left_out
     read -r good bad < <(sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed.*/\1 \2/p' "$log" | tail -n 1)
+    left_out=$(sed -n 's/^skipped: \([0-9]*\).*/\1/p' "$log" | tail -n 1)
+    : "${left_out:=0}" "${bad:=0}"
     if [ "$status" -ne 0 ]; then
         echo "$who: make $* failed"
         : "${good:=0}"
-        [ "${bad:-0}" -gt 0 ] || bad=1
+        [ "$bad" -gt 0 ] || bad=1
     fi
-    left_out=$(sed -n 's/^skipped: \([0-9]*\).*/\1/p' "$log" | tail -n 1)
-    if [ "$must_count" = yes ] && [ "${bad:-0}" -eq 0 ] && [ $((${good:-0} + ${left_out:-0})) -eq 0 ]; then
+    if [ "$must_count" = yes ] && [ "$bad" -eq 0 ] && [ $((${good:-0} + left_out)) -eq 0 ]; then
         echo "$who: make $* failed: it prints nothing passed, failed or skipped"
         good=0
         bad=1
     fi
-    took=$((SECONDS - began))
+    : "${good:=$((left_out == 0))}"
+    took=$(elapsed "$began")
     if over_budget "$took"; then
         echo "$who: make $* failed: $took s are more than half over its budget of $limit_s s (SLOWER=2: a machine that takes twice as long)"
-        bad=$((${bad:-0} + 1))
+        bad=$((bad + 1))
     fi
-    passed=$((passed + ${good:-1}))
-    failed=$((failed + ${bad:-0}))
-    skipped=$((skipped + ${left_out:-0}))
-    steps+=("make $*: $took s, ${bad:-0} failed")
-    after_step "$*" "${good:-$((${bad:-0} == 0))}" "${bad:-0}" "${left_out:-0}" "$took"
+    passed=$((passed + good))
+    failed=$((failed + bad))
+    skipped=$((skipped + left_out))
+    steps+=("make $*: $took s, $bad failed")
+    after_step "$*" "$good" "$bad" "$left_out" "$took"
     echo "$who: make $*: $took s$([ "$limit_s" -eq 0 ] || echo " of $limit_s s")"
 }
 
-# a step of which something must be heard: a status of 0 alone is no success
+# a step that must report a count: a status of 0 alone is no success
 counted() {
     must_count=yes
     step "$@"
@@ -59,6 +69,7 @@ counted() {
 # within MINUTES step|counted TARGET...: its budget on two cores; half over it is a failure
 within() {
     limit_s=$(($1 * 60))
+    all_limits_s=$((all_limits_s + limit_s))
     shift
     "$@"
     limit_s=0
@@ -66,7 +77,8 @@ within() {
 
 # the sums, and the status
 ended() {
-    echo "$who: $skipped skipped, $SECONDS s"
+    [ ${#steps[@]} -gt 0 ] || { echo "$who: no step was taken"; failed=1; }
+    echo "$who: $skipped skipped, $SECONDS s$([ "$all_limits_s" -eq 0 ] || echo " of $all_limits_s s")"
     echo "$passed passed, $failed failed"
     [ "$failed" -eq 0 ]
 }

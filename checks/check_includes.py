@@ -58,6 +58,7 @@ RULES = {
     "hal/host": (LIBC | MACHINES | HAL | MODEL | headers("hal/host"), None),
     **{f"firmware/{room}": (BELOW | room_headers(room), None) for room in ROOMS},
     "nav/image": (STANDARD | MACHINES | NAV_IMAGE | NAV | HAL, None),
+    "sim/model": (LIBC | headers("sim/model") | {"adxl345_registers.h"}, SIMAVR),
     "sim": (LIBC | SIM | {"adxl345_registers.h"}, SIMAVR),
 }
 # everything but hal/avr: here what must not be included; AVR headers where the code is for the chip

@@ -5,7 +5,7 @@ HOST_CC    := gcc
 HOST_CXX   := g++
 SANITIZE   := -fsanitize=address,undefined -fno-sanitize-recover=all
 SIM_INC    := -Isim/model -Isim/run -Isim/faults -Isim/judge
-HOST_INC   := $(INCLUDES) -Ihal/host $(SIM_INC) -Ihost_tests -Inav/tests -isystem $(UNITY_DIR)
+HOST_INC   := $(INCLUDES) -Ihal/host -Isim/model -Isim/judge -Ihost_tests -Inav/tests -isystem $(UNITY_DIR)
 HOST_FLAGS := -std=c11 -O1 -g -D_POSIX_C_SOURCE=200809L -DHANG_TEST=1 -DSUPERVISOR=1 -DUNITY_INCLUDE_DOUBLE $(HOST_INC)
 MODEL_SRC  := sim/model/adxl345_model.c sim/model/adxl345_variants.c sim/model/feed.c sim/model/stream.c
 HOST_SRC   := $(filter-out firmware/app/main.c,$(APP_SRC)) $(LIB_SRC) $(wildcard hal/host/*.c) $(MODEL_SRC)
@@ -61,7 +61,7 @@ $(filter-out %/test_nav_link,$(TESTS)): $(H)/test_%: $(H)/unity.o $(H)/libsuppor
 # python3, which make deps installs, targets that need no test can still be built.
 PARTS := $(H)/parts.mk $(if $(filter coverage $(B)/coverage/%,$(MAKECMDGOALS)),$(B)/coverage/parts.mk)
 ifneq ($(filter-out help deps clean,$(MAKECMDGOALS)),)
-$(PARTS): mk/scripts/test_parts.py $(wildcard $(addprefix host_tests/*/*.,c h cpp hpp) nav/tests/*) $(HOST_SRC) $(wildcard */*.h firmware/*/*.h hal/*/*.h lib/*/src/*.h)
+$(PARTS): mk/scripts/test_parts.py $(wildcard $(addprefix host_tests/*/*.,c h cpp hpp) nav/tests/*) $(HOST_SRC) $(wildcard */*.h sim/*/*.h firmware/*/*.h hal/*/*.h lib/*/src/*.h)
 	@mkdir -p $(@D)
 	@! command -v python3 > /dev/null || { python3 mk/scripts/test_parts.py $(@D) > $@.$$$$ && mv $@.$$$$ $@; }
 -include $(PARTS)

@@ -3,8 +3,8 @@
 binary (simrun's profiles, system tests; the lines that the fault campaign reaches are counted here too, for campaigns/faults/faults.py).
 
     coverage.py judge GCOVR.json ELF FOLDER     tables, uncovered lines, build/coverage.json; 1 when below a target
-    coverage.py twins GCOVR.json ELF FOLDER     a line of lib and one of nav/lib not executed, a file of nav/lib left out, one run of the
-                                                chip alone: must be below
+    coverage.py twins GCOVR.json ELF FOLDER     a line of lib and one of nav/lib not executed, a file of nav/lib left out, a profile of an
+                                                earlier binary: must be seen; one run of the chip alone: must be below
     coverage.py check ELF PROFILE SOURCE        the tool itself: lines marked `ran` and `not reached` in a small program
 
 A line of the binary is executable when at least one instruction is attributed to it (.debug_line: with inlining and
@@ -16,6 +16,7 @@ nav/lib is compiled in variants (campaigns/coverage/nav_lib_coverage.mk): a line
 """
 import collections
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -296,12 +297,29 @@ def spoilt_is_seen(report, part):
     return seen
 
 
+def stale_is_refused(elf, folder):
+    """A profile of an earlier binary among the others."""
+    old = pathlib.Path(folder, "stale.csv")
+    old.write_text("pc,count,cycles,symbol\n", encoding="ascii")
+    os.utime(old, (0, 0))
+    try:
+        profiles_of(elf, folder)
+    except SystemExit as refusal:
+        seen = "older than" in str(refusal)
+    else:
+        seen = False
+    old.unlink()
+    print(f"twins: a profile of an earlier binary: {'seen' if seen else 'NOT SEEN'}")
+    return seen
+
+
 def twins(report, elf, folder):
     """The judge must see what is missing: a line, a file, all runs of the chip but one."""
     seen = [spoilt_is_seen(report, part) for part in ("lib/", *NAVIGATION)]
     rows = [row for row in host_rows(report, Excluder([]))[0] if row["file"] != "nav/lib/nav_ud.c"]
     seen.append(left_out(rows, "nav/lib/*.c") == {"nav/lib/nav_ud.c"})
     print(f"twins: nav/lib/nav_ud.c not in the data: {'seen' if seen[-1] else 'NOT SEEN'}")
+    seen.append(stale_is_refused(elf, folder))
     one = profiles_of(elf, folder)[:1]
     ours = [r for r in avr_rows(elf, executed(one), Excluder([]))[0] if not r["file"].startswith("lib/")]
     share = percent(total(ours, "lines_executed"), total(ours, "lines"))

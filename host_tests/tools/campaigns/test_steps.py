@@ -16,7 +16,7 @@ echo "$*" >> "$CALLS"
 case "$*" in
     "$FAILS"*) echo "4 passed, 2 failed"; exit 2 ;;
     "$SILENT"*) exit 0 ;;
-    "$SKIPS"*) echo "skipped: 3 (as said above)"; echo "0 passed, 0 failed"; exit 0 ;;
+    "$SKIPS"*) echo "skipped: 3 (as said above)"; exit 0 ;;
 esac
 echo "2 passed, 0 failed"
 """
@@ -78,11 +78,14 @@ def each_step_of_the_night_has_its_row_and_keeps_it():
     assert re.fullmatch(r"[0-9a-f]{8}\+?|no git", rows["faults"][0]) and rows["faults"][1:] == ["2", "0", "0", "0.0"], rows
     run_with_make("campaigns/nightly.sh", fails="soak", steps="soak")
     assert night_rows()["soak HOURS=24"][1:4] == ["4", "2", "0"] and night_rows()["faults"] == rows["faults"]
+    run_with_make("campaigns/nightly.sh", skips="recordings", steps="recordings")
+    assert night_rows()["recordings"][1:4] == ["0", "0", "3"], night_rows()["recordings"]
     PAGE.write_text(PAGE.read_text(encoding="utf-8") + "| `gone` | 01234567 | 1 | 0 | 0 | 0.1 |\n", encoding="utf-8")
     run_with_make("campaigns/nightly.sh", steps="soak")
     assert "gone" not in night_rows() and night_rows()["soak HOURS=24"][1:4] == ["2", "0", "0"]
     status, text, calls = run_with_make("campaigns/nightly.sh", steps="soak nothing")
-    assert status == 1 and calls == [] and text == "nightly: STEPS names what is no step: nothing\n", text
+    assert status == 1 and calls == [] and text.startswith("nightly: STEPS: no step nothing; choose from: arduino bench "), text
+    assert run_with_make("campaigns/nightly.sh", steps=".")[0] == 1
 
 
 @test
@@ -95,6 +98,30 @@ def every_step_of_ci_has_a_budget_and_half_over_it_fails():
         command = f". campaigns/steps.sh; limit_s={limit_s}; over_budget {took_s}"
         return subprocess.run(["bash", "-c", command], check=False, env={**os.environ, "SLOWER": slower}).returncode == 0
     assert [over(60, 90), over(60, 91), over(60, 180, "2"), over(60, 181, "2"), over(0, 1000)] == [False, True, False, True, False]
+    for took_s, failures in ((90, 0), (91, 1)):
+        script = f"who=x; . campaigns/steps.sh; make() {{ true; }}; elapsed() {{ echo {took_s}; }}; within 1 step soak; step faults; ended"
+        done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=False)
+        assert done.returncode == failures and done.stdout.endswith(f" of 60 s\n2 passed, {failures} failed\n"), done
+
+
+@test
+def a_machine_s_slowness_is_a_whole_number_and_no_step_is_no_success():
+    for slower in ("1.5", "0", "-1", "x", "1e3"):
+        done = subprocess.run(["bash", ".ci/run"], capture_output=True, text=True, check=False, env={**os.environ, "SLOWER": slower})
+        assert done.returncode == 1 and done.stderr.startswith(f"ci: SLOWER={slower}: ") and not done.stdout, done
+    done = subprocess.run(["bash", "-c", "who=x; . campaigns/steps.sh; ended"], capture_output=True, text=True, check=False)
+    assert done.returncode == 1 and done.stdout.endswith("x: no step was taken\nx: 0 skipped, 0 s\n0 passed, 1 failed\n"), done
+
+
+@test
+def what_is_typed_makes_no_step_of_the_night_smaller():
+    calls = OUT / "sizes"
+    (OUT / "make").write_text('#!/bin/sh\necho "$*|$SAMPLE$ONLY$RUNS$MAKEFLAGS" >> "$CALLS"\necho "1 passed, 0 failed"\n', encoding="ascii")
+    calls.unlink(missing_ok=True)
+    subprocess.run(["bash", "campaigns/nightly.sh"], capture_output=True, check=True, env={
+        **os.environ, "PATH": f"{OUT.resolve()}:{os.environ['PATH']}", "CALLS": str(calls.resolve()), "NIGHT_PAGE": str(PAGE), "STEPS": "faults papers",
+        "SAMPLE": "60", "ONLY": "x", "RUNS": "9", "MAKEFLAGS": " -- SAMPLE=60"})
+    assert calls.read_text(encoding="ascii") == "papers|\nfaults|\n", calls.read_text(encoding="ascii")
 
 
 @test
