@@ -219,6 +219,16 @@ def what_cannot_be_run_is_one_sentence():
 
 
 @test
+def bad_words_of_the_programs_in_cpp_give_one_sentence():
+    program = papers.PAPERS["004"][0][1]
+    (name, _), *_ = papers.experiments_of([program]).items()
+    for words, sentence in ((["nothing"], "'nothing': no such experiment"), ([name, "--runs", "0"], "--runs: takes a whole number"),
+                            ([name, "--seed"], "--seed: takes a whole number"), ([name, "--hurry", "1"], "--hurry: unknown option")):
+        done = subprocess.run([program, *words], capture_output=True, text=True, timeout=600, check=False)
+        assert done.returncode == 2 and done.stderr.startswith(f"paper004_board: {sentence}") and done.stderr.count("\n") == 1, done
+
+
+@test
 def paper_004_is_judged_and_its_twins_are_named():
     rows = rows_of("004", "windows_stuck_at_zero") + rows_of("004", "observability")
     # the degree of observability alone with the acceptor's numbers, and a fixed sensor with more noise than the second moments allow

@@ -152,6 +152,8 @@ def what_does_not_come_out_again_is_named_by_every_run():
         assert "p: Roll, steps, raw: 1 on the page, 2 in this run\n" in said_of.getvalue(), said_of.getvalue()
         assert page.write(lines("2")) == ["Roll, steps, raw: 1 on the page, 2 in this run"]
         assert page.check(lines("3")) == ["docs/results/p.md: Roll, steps, raw: 2 on the page, 3 in this run"]
+        assert page.check(results.table("Roll", "", ["stream", "raw"], [["ramp", "2"]])) == [
+            "docs/results/p.md: Roll, steps, raw: 2 on the page, not there in this run"]
         assert page.check([*lines("2"), "More."]) == ["docs/results/p.md: its text or its tables differ from those of this run"]
         assert results.numbers_of(page.held()) == {"Roll, steps, raw": "2"}
 
