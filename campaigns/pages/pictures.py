@@ -1,4 +1,4 @@
-"""Pictures of docs/results. Each file holds the hash of what it shows and of the source that draws it, so that one that a new run would draw
+"""Pictures of docs/results. Each file holds the hash of what it shows and of the sources that draw it, so that one that a new run would draw
 otherwise is noticed by any version of matplotlib, and an equal one is left as it is."""
 import hashlib
 import io
@@ -52,7 +52,8 @@ class Picture:
     top: float = 0.99  # of what is drawn, as a share of the height
 
     def digest(self):
-        return hashlib.sha256(pathlib.Path(self.source).read_bytes() + flat(self.data).encode("ascii")).hexdigest()
+        sources = [pathlib.Path(source).read_bytes() for source in (__file__, self.source)]
+        return hashlib.sha256(b"".join([*sources, flat(self.data).encode("ascii")])).hexdigest()
 
     def stale(self):
         """Whether its file does not hold its hash (a tEXt chunk: key, NUL, text)."""

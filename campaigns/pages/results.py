@@ -1,5 +1,5 @@
-"""Pages of results, docs/results/*.md: written whole by the command that measures them, with the hash of its sources under the title. A number
-that the committed page has otherwise is named."""
+"""Pages of results, docs/results/*.md: written whole by the command that measures them, with the hash of its sources under the title. Numbers
+that differ from the committed page are listed."""
 import hashlib
 import pathlib
 import subprocess
@@ -30,7 +30,8 @@ def output_of(command, given=None, statuses=(0,)):
     try:
         done = subprocess.run(command, input=given, capture_output=True, text=True, timeout=1200)
     except FileNotFoundError as missing:
-        raise Fault(f"{command[0]} is not built: the make target of this page builds it") from missing
+        why = " is not built: the make target of this page builds it" if "/" in command[0] else ": not found"
+        raise Fault(command[0] + why) from missing
     if done.returncode not in statuses:
         raise Fault(f"{command[0]} gave status {done.returncode}: {(done.stderr or done.stdout).strip()}")
     return done.stdout

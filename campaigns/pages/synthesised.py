@@ -15,7 +15,7 @@ try:
     from design.response import pole_radius, step
     from design.structure import Filter, alpha_beta
     from design.synthesis import by_formula, error_by_formula
-    from synthesis import batch
+    from synthesis import batch, roll
 except ImportError as missing:
     sys.exit(f"synthesised: {missing.name} is missing: run make synthesised, which installs it")
 from results import FOLDER, Fault, Results, output_of, run_as_program, table
@@ -40,12 +40,11 @@ PRESETS = (("paper 001", Fraction(-3, 10), Fraction(1, 10)), ("what 001's figure
            ("best next sample, a1 free", Fraction(1, 2), Fraction(1, 2)))
 LAGS = (0.1, 0.25, 0.5, 1.0, 3.0, 9.0, 25.0, 100.0, 1000.0)
 PROFILES = ("ramp30", "cos60", "bump30", "sine30")
-WINDOWS = ("2-5", "6-10", "11-15")
+WINDOWS = {name.replace("_", "-"): window for name, window in roll.WINDOWS.items() if name != "0_5"}
 GATE_CHOSEN, GATES_SHOWN = 3.0, (2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0)
 SHARES = (0.0, 0.05, 0.15)
 
-# paper 000's roll: 15 s at 10 Hz, R = 0.6 deg^2, 16 LSB per degree
-SAMPLES, RATE_DHZ, R_DEG2, LSB_PER_DEGREE = 151, 100, 0.6, 16
+RATE_DHZ, LSB_PER_DEGREE = 100, 16  # paper 000's roll, as the sensor has it
 SHIFT_SIGMA, SHIFT_RUNS, SEED = 20.0, 2000, 2024
 
 
@@ -83,15 +82,9 @@ def fading(k):
 # --- the shipped filters ----------------------------------------------------------------------------------------------
 
 
-def truth_deg(profile):
-    turn = np.clip((np.arange(SAMPLES) / 10.0 - 6.0) / 4.0, 0.0, 1.0)
-    return {"ramp30": 30.0 * turn, "cos60": 30.0 - 30.0 * np.cos(math.pi * turn), "bump30": 15.0 - 15.0 * np.cos(2.0 * math.pi * turn),
-            "sine30": 30.0 * np.sin(2.0 * math.pi * turn)}[profile]
-
-
 def replayed(runs_lsb, name):
     """Estimates of a filter with its defaults and told R, in degrees, runs x samples, each run from a start of its own."""
-    estimates = batch.shipped(name, RATE_DHZ, {}, R_DEG2 * LSB_PER_DEGREE ** 2, False, runs_lsb)
+    estimates = batch.shipped(name, RATE_DHZ, {}, roll.R_DEG2 * LSB_PER_DEGREE ** 2, False, runs_lsb)
     return estimates / 65536.0 / LSB_PER_DEGREE
 
 
@@ -102,20 +95,20 @@ def measured_lsb(degrees):
 
 def outlier_run(share=0.05):
     """(truth, samples in LSB) of one roll of cos60 of which `share` of the samples have 20 times the noise."""
-    chance, truth = np.random.default_rng(SEED), truth_deg("cos60")
-    sigma = math.sqrt(R_DEG2) * np.where(chance.random(SAMPLES) < share, 20.0, 1.0)
-    return truth, measured_lsb(truth + sigma * chance.normal(size=SAMPLES))
+    chance, truth = np.random.default_rng(SEED), roll.PROFILES["cos60"].truth()
+    sigma = math.sqrt(roll.R_DEG2) * np.where(chance.random(roll.SAMPLES) < share, 20.0, 1.0)
+    return truth, measured_lsb(truth + sigma * chance.normal(size=roll.SAMPLES))
 
 
 def shifted(share):
     """Mean square errors of adaptive in the three windows of each profile, `share` of the samples shifted by 20 sigma to either side."""
     chance, found = np.random.default_rng(SEED), []
     for profile in PROFILES:
-        truth, size = truth_deg(profile), (SHIFT_RUNS, SAMPLES)
+        truth, size = roll.PROFILES[profile].truth(), (SHIFT_RUNS, roll.SAMPLES)
         off = SHIFT_SIGMA * np.where(chance.random(size) < share, chance.choice((-1.0, 1.0), size), 0.0)
-        estimates = replayed(measured_lsb(truth + math.sqrt(R_DEG2) * (chance.normal(size=size) + off)), "adaptive")
+        estimates = replayed(measured_lsb(truth + math.sqrt(roll.R_DEG2) * (chance.normal(size=size) + off)), "adaptive")
         square = np.mean((estimates - truth) ** 2, axis=0)
-        found.append([np.mean(square[part]) for part in (slice(20, 51), slice(60, 101), slice(110, 151))])
+        found.append([np.mean(square[part]) for part in WINDOWS.values()])
     return found
 
 

@@ -36,11 +36,13 @@ BAR = 30  # columns
 
 
 def show_progress(done, work, began):
-    """How much of the work is done and the time left, on a terminal only."""
-    if sys.stderr.isatty() and done:
-        filled, spent = int(BAR * done / work), time.monotonic() - began
-        left = f"{spent * (work - done) / done:.0f} s left"
-        print(f"\rpapers [{'#' * filled}{'.' * (BAR - filled)}] {100 * done / work:3.0f} %  {left:<12}", end="", file=sys.stderr, flush=True)
+    """How much of the work is done and the time left, on a terminal only; an empty line where nothing is done."""
+    text = ""
+    if done:
+        filled, left_s = int(BAR * done / work), (time.monotonic() - began) * (work - done) / done
+        text = f"papers [{'#' * filled}{'.' * (BAR - filled)}] {100 * done / work:3.0f} %  {left_s:.0f} s left"
+    if sys.stderr.isatty():
+        print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
 
 
 def command_of(program):
@@ -88,11 +90,14 @@ def chosen_of(words, only=()):
 def run_all(experiments, options):
     """Rows of all experiments, in the order of the list; two at a time."""
     began, done, work = time.monotonic(), 0.0, sum(part for _, part in experiments.values())
-    with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
-        futures = {pool.submit(run_one, program, name, options): part for name, (program, part) in experiments.items()}
-        for future in concurrent.futures.as_completed(futures):
-            done += futures[future]
-            show_progress(done, work, began)
+    try:
+        with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
+            futures = {pool.submit(run_one, program, name, options): part for name, (program, part) in experiments.items()}
+            for future in concurrent.futures.as_completed(futures):
+                done += futures[future]
+                show_progress(done, work, began)
+    finally:
+        show_progress(0.0, work, began)
     return [row for future in futures for row in future.result()]
 
 

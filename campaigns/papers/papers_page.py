@@ -81,8 +81,8 @@ def markers(paper):
 def between(text, paper):
     """(before, the part, after)."""
     begin, end = markers(paper)
-    if text.count(begin) != 1 or text.count(end) != 1:
-        raise Fault(f"{DOCUMENT}: has no line '{begin}' or '{end}', or two")
+    if text.count(begin) != 1 or text.count(end) != 1 or text.index(begin) > text.index(end):
+        raise Fault(f"{DOCUMENT}: wants one line '{begin}', and one '{end}' below it")
     before, rest = text.split(begin)
     part, after = rest.split(end)
     return before, part, after

@@ -4,7 +4,7 @@ from ctypes import c_char_p, c_double, c_int, c_uint64, c_void_p
 from typing import NamedTuple
 
 import numpy as np
-from synthesis.batch import Refused, c, default_of, names, pointer
+from synthesis.batch import Refused, accepted, c, has, names, pointer
 
 TABLE1, MEDIAN, SHIPPED = range(3)  # starts: estimate and P of Table 1; running median of five, the rate as uncertain; as on the chip
 PERIOD_S, R_DEG2, Q_RATE, CLEAN, RATIO, LSB_DEG = 0.0247, 0.0064, 0.0009, 0.85, 20.0, 0.02  # Table 1
@@ -83,17 +83,14 @@ class Filter(NamedTuple):
         return gain(c_void_p(self.handle), c_double(y_deg), count)
 
 
-def made(function, *arguments):
-    function.restype = c_void_p
-    return function(*arguments)
-
-
 def in_double(name, start=TABLE1, r_factor=1.0, gate_sigma=0.0):
     """gate_sigma 0: the filter's own."""
     entry = ENTRIES[name]
     kalman_core = entry.reference in ("kf", "lrf") or entry.reacquire  # the library has it on the core of kalman.h, not on that of wide.h
     as_published = entry.reference == GATED and not entry.reacquire
-    handle = made(c().contest_in_double, entry.reference.encode(), entry.reading, c_double(r_factor), c_double(gate_sigma or entry.gate_sigma),
+    make = c().contest_in_double
+    make.restype = c_void_p
+    handle = make(entry.reference.encode(), entry.reading, c_double(r_factor), c_double(gate_sigma or entry.gate_sigma),
                   entry.reacquire, c_double(RATE_MAX_DEG_S), 0 if start == TABLE1 or as_published else 5,
                   c_double(SHIPPED_RATE_VARIANCE if start == SHIPPED else 0.0), c_double(14.0 if kalman_core else 1.0))
     if not handle:
@@ -105,16 +102,14 @@ def fixed(name, start=TABLE1, r_factor=1.0, gate_sigma=0.0):
     rate_dhz = round((1.0 if start == SHIPPED else HURRY) * 10.0 / PERIOD_S)
     t_s = 10.0 / rate_dhz
     learns = c().contest_learns(name.encode())  # (15) begins with all values alike
-    parameters = {"r": R_DEG2 / (LSB_DEG * LSB_DEG) * r_factor,
-                  "q": Q_RATE / (LSB_DEG * LSB_DEG) * PERIOD_S * PERIOD_S / (t_s * t_s * t_s),
-                  "ratemax": RATE_MAX_DEG_S / LSB_DEG * PERIOD_S / t_s, "clean": 0.5 if learns else CLEAN, "ratio": RATIO,
-                  **({"gate": gate_sigma} if gate_sigma else {})}
-    words = (c_char_p * len(parameters))(*(word.encode() for word in parameters))
-    handle = made(c().contest_fixed, name.encode(), rate_dhz, len(parameters), words, pointer(np.array(list(parameters.values()))),
-                  int(start == TABLE1))
-    if not handle:
-        raise Refused(f"{name}: refuses the parameters of Table 1, or cannot start from it")
-    return Filter(name, "fixed", handle)
+    table1 = {"r": R_DEG2 / (LSB_DEG * LSB_DEG) * r_factor,
+              "q": Q_RATE / (LSB_DEG * LSB_DEG) * PERIOD_S * PERIOD_S / (t_s * t_s * t_s),
+              "ratemax": RATE_MAX_DEG_S / LSB_DEG * PERIOD_S / t_s, "clean": 0.5 if learns else CLEAN, "ratio": RATIO}
+    parameters = {word: value for word, value in table1.items() if has(name, word)} | ({"gate": gate_sigma} if gate_sigma else {})
+    words, handle = (c_char_p * len(parameters))(*(word.encode() for word in parameters)), c_void_p()
+    accepted(name, c().contest_fixed(name.encode(), rate_dhz, len(parameters), words, pointer(np.array(list(parameters.values()), dtype=float)),
+                                     int(start == TABLE1), ctypes.byref(handle)))
+    return Filter(name, "fixed", handle.value)
 
 
 def fixed_names():

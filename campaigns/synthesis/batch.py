@@ -5,12 +5,13 @@ import pathlib
 from ctypes import c_char_p, c_double, c_int
 
 import numpy as np
+from page_sources import Fault
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATH = ROOT / "build/papers/libbatch.so"
 
 
-class Refused(Exception):
+class Refused(Fault):
     """One sentence about what the library does not take."""
 
 
@@ -22,7 +23,7 @@ def c():
         raise Refused(f"{PATH}: make paper_programs builds it") from missing
     for name in ("batch_largest_r_lsb2", "batch_largest_rate_drive", "reference_closed_noise_gain", "reference_closed_lag"):
         getattr(library, name).restype = c_double
-    for name in ("batch_name", "batch_parameter", "batch_shipped"):
+    for name in ("batch_name", "batch_parameter", "batch_shipped", "contest_fixed"):
         getattr(library, name).restype = c_char_p
     return library
 
@@ -48,6 +49,10 @@ def default_of(name, rate_dhz, parameter):
     value = c_double()
     accepted(name, c().batch_parameter(name.encode(), rate_dhz, parameter.encode(), ctypes.byref(value)))
     return value.value
+
+
+def has(name, parameter):
+    return c().batch_parameter(name.encode(), 1000, parameter.encode(), ctypes.byref(c_double())) is None
 
 
 def largest_r_lsb2():
@@ -76,7 +81,7 @@ def draws(seeds, samples, normal=True, uniform=True):
 
 def shipped(name, rate_dhz, parameters, r_lsb2, reset, z_lsb):
     """Estimates in LSB x 65536."""
-    z_lsb = np.ascontiguousarray(z_lsb)
+    z_lsb = np.ascontiguousarray(z_lsb, dtype=float)
     x, values = np.empty_like(z_lsb), np.array(list(parameters.values()), dtype=float)
     words = (c_char_p * len(parameters))(*(word.encode() for word in parameters))
     accepted(name, c().batch_shipped(name.encode(), rate_dhz, len(parameters), words, pointer(values), c_double(r_lsb2), int(reset), *z_lsb.shape,
@@ -86,14 +91,14 @@ def shipped(name, rate_dhz, parameters, r_lsb2, reset, z_lsb):
 
 def noise_identified(rate_dhz, z_lsb):
     """R in LSB^2 x 256 at the end of each run."""
-    found = np.empty(len(z_lsb))
-    c().batch_noise(rate_dhz, *z_lsb.shape, pointer(np.ascontiguousarray(z_lsb)), pointer(found))
+    z_lsb, found = np.ascontiguousarray(z_lsb, dtype=float), np.empty(len(z_lsb))
+    c().batch_noise(rate_dhz, *z_lsb.shape, pointer(z_lsb), pointer(found))
     return found
 
 
 def noise_expected(rate_dhz, truth_lsb, variance_lsb2, bad):
     """(estimate, weight, again) of reference/noise.h."""
-    found = np.empty(3)
+    truth_lsb, found = np.ascontiguousarray(truth_lsb, dtype=float), np.empty(3)
     c().batch_noise_expected(rate_dhz, len(truth_lsb), pointer(truth_lsb), c_double(variance_lsb2), c_double(bad), pointer(found))
     return found
 

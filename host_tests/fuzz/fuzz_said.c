@@ -9,7 +9,7 @@
 #include "fuzz_commands.h"
 #include "settings/settings_table.h"
 
-_Static_assert(SETTING_PARAMETERS == FUZZ_SETTINGS + FUZZ_VECTORS, "one setting more: fuzz_protocol.c has to know it");
+_Static_assert(SETTING_PARAMETERS == FUZZ_SETTINGS + FUZZ_VECTORS, "a setting was added: add it to fuzz_protocol.c");
 
 enum { ROW_FLAGS = 0x7FF };
 

@@ -1,5 +1,7 @@
-// What the experiments of papers 000 and 001 (campaigns/synthesis) ask of C: random numbers, the shipped filters,
-// linear filters and the references, many samples at a time. A plain C interface for ctypes; arrays are runs x samples.
+// What campaigns/synthesis (papers 000 and 001, and the page of the synthesised filters) asks of C: random numbers, the
+// shipped filters, linear filters and the references, many samples at a time; campaigns/resilience (paper 002) asks it
+// for names and defaults. A plain C interface for ctypes; arrays are runs x samples.
+#include "batch.hpp"
 #include "reference/noise.h"
 
 extern "C" {
@@ -7,7 +9,6 @@ extern "C" {
 #include "kalman.h"
 #include "noise.h"
 #include "reference/synthesis.h"
-#include "support/filters.h"
 }
 
 #include <array>
@@ -59,10 +60,10 @@ Vector predicted(const Matrix &f, const Vector &x)
     }
     return result;
 }
+} // namespace
 
-// A filter with parameters by their names in the descriptor; those that it has not are left.
-const char *begun(const char *name, int rate_dhz, int count, const char *const *names, const double *values,
-                  filter_t *f)
+const char *papers::begun(const char *name, int rate_dhz, int count, const char *const *names, const double *values,
+                          filter_t *f)
 {
     const filter_kind_t kind = filter_find(name);
     if (kind == FILTER_KIND_COUNT) {
@@ -85,7 +86,6 @@ const char *begun(const char *name, int rate_dhz, int count, const char *const *
     }
     return filter_init(f, filter_listed(kind), &config) == FILTER_ACCEPTED ? nullptr : "refuses these parameters";
 }
-} // namespace
 
 extern "C" {
 double batch_largest_r_lsb2(void)
@@ -144,7 +144,7 @@ const char *batch_shipped(const char *name, int rate_dhz, int count, const char 
                           double r_lsb2, int reset, int runs, int samples, const double *z_lsb, double *x_lsb_q16)
 {
     filter_t initial;
-    const char *refused = begun(name, rate_dhz, count, names, values, &initial);
+    const char *refused = papers::begun(name, rate_dhz, count, names, values, &initial);
     if (refused != nullptr) {
         return refused;
     }

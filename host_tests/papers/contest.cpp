@@ -1,5 +1,6 @@
 // What the experiments of paper 002 (campaigns/resilience) ask of C: its filters, in double and as shipped, over the
 // same realisations. A plain C interface for ctypes; a filter is a handle that lasts, arrays are filters x runs.
+#include "batch.hpp"
 #include "model.hpp"
 #include "reference/robust.h"
 #include "scope.hpp"
@@ -12,7 +13,6 @@ extern "C" {
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <memory>
 
@@ -245,29 +245,17 @@ Filter *contest_in_double(const char *name, int reading, double r_factor, double
     return robust_reference_refused(&f) == nullptr ? new papers::DoubleFilter(f) : nullptr;
 }
 
-// A shipped one with parameters by their names in the descriptor, those that it has.
-Filter *contest_fixed(const char *name, int rate_dhz, int count, const char *const *names, const double *values,
-                      int table1)
+// A shipped one with parameters by their names in the descriptor. NULL, or what is wrong.
+const char *contest_fixed(const char *name, int rate_dhz, int count, const char *const *names, const double *values,
+                          int table1, Filter **made)
 {
-    const filter_kind_t kind = filter_find(name);
-    if (kind == FILTER_KIND_COUNT) {
-        return nullptr;
-    }
-    filter_config_t config = filter_defaults(filter_listed(kind), static_cast<std::uint16_t>(rate_dhz));
-    for (std::uint8_t i = 0; i < parameter_count(kind); i++) {
-        const filter_parameter_t parameter = parameter_at(kind, i);
-        for (int k = 0; k < count; k++) {
-            if (std::strcmp(parameter.words, names[k]) == 0) {
-                config.value[i] = static_cast<std::int32_t>(
-                    std::lround(std::ldexp(values[k], parameter.fraction_bits)));
-            }
-        }
-    }
     filter_t f;
-    if (filter_init(&f, filter_listed(kind), &config) != FILTER_ACCEPTED || (table1 != 0 && !papers::begin_table1(f))) {
-        return nullptr;
+    const char *refused = papers::begun(name, rate_dhz, count, names, values, &f);
+    if (refused == nullptr && table1 != 0 && !papers::begin_table1(f)) {
+        refused = "cannot start from Table 1";
     }
-    return new papers::FixedFilter(f);
+    *made = refused == nullptr ? new papers::FixedFilter(f) : nullptr;
+    return refused;
 }
 
 int contest_of_the_paper(const char *name)

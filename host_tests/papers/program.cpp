@@ -51,7 +51,7 @@ int run(const std::vector<Experiment> &experiments, int argc, char **argv)
             return 0;
         }
     }
-    throw std::runtime_error("'" + word + "': no such experiment (--list tells them)");
+    throw std::runtime_error("'" + word + "': no such experiment (--list shows them)");
 }
 } // namespace
 

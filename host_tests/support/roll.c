@@ -1,8 +1,9 @@
 #include "support/roll.h"
 #include "support/filters.h"
-#include "support/roll_shapes.h"
 
 #include <math.h>
+
+static const double pi = 3.14159265358979323846;
 
 const char *const roll_profile_names[PROFILES] = { "ramp30", "cos60", "bump30", "sine30", "still" };
 
@@ -11,13 +12,13 @@ double roll_truth_deg(roll_profile_t profile, double t_s)
     double s = fmin(1.0, fmax(0.0, (t_s - 6.0) / 4.0));
     switch (profile) {
     case RAMP30:
-        return 30.0 * roll_ramp(s);
+        return 30.0 * s;
     case COS60:
-        return 60.0 * roll_cosine(s);
+        return 30.0 - 30.0 * cos(pi * s);
     case BUMP30:
-        return 30.0 * roll_bump(s);
+        return 15.0 - 15.0 * cos(2.0 * pi * s);
     case SINE30:
-        return 30.0 * roll_sine(s);
+        return 30.0 * sin(2.0 * pi * s);
     case STILL:
     case PROFILES:
         break;
@@ -33,7 +34,7 @@ double roll_uniform(uint32_t *random)
 static double normal(uint32_t *random)
 {
     double radius = sqrt(-2.0 * log(roll_uniform(random)));
-    return radius * cos(2.0 * ROLL_PI * roll_uniform(random));
+    return radius * cos(2.0 * pi * roll_uniform(random));
 }
 
 int16_t roll_measured_lsb(uint32_t *random, double degrees, double share)

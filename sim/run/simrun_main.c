@@ -1,6 +1,6 @@
 /*
  * simrun: the unmodified UNO firmware in libsimavr, with the virtual ADXL345 on its bus and a recorded stream in the
- * sensor. A part each is one simrun_<part>.c with its own state; this one starts them, ties them together where
+ * sensor. Each part is one `simrun_<part>.c` with its own state; this one starts them, ties them together where
  * something below acts on something above, and ends them.
  */
 #include <stdbool.h>

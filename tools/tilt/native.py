@@ -17,7 +17,6 @@ LIBRARY = pathlib.Path("build/host/libtilt.so")
 SOURCES = ("firmware/*/*.[ch]", "lib/*/src/*.[ch]", "hal/*.h", "hal/host/*.[ch]", "sim/*/*.[ch]", "host_tests/tools/libtilt/*.[ch]",
            "Makefile", "tools/tilt/tilt.mk")
 RATES_DHZ = tuple(125 << power for power in range(7))  # of the firmware
-RANGES_G = (2, 4, 8, 16)
 FORK_FROM_ROWS = 20_000  # a second process takes 20 ms to start and end
 MISSING, THERE, AT_RAIL = 0, 1, 2
 GATED, REACQUIRED = 1, 4  # flags of probes, as those of rows

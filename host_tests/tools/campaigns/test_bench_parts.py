@@ -153,6 +153,12 @@ def tables_have_every_part():
 
 
 @test
+def results_are_rows_for_programs():
+    row = next(row for row in bench_parts.json_rows({CASE: measured(driver=12.345)}) if row["part"] == "driver")
+    assert row == {"rate_hz": 100, "filter": CASE.filter_name(), "part": "driver", "cycles": 12.3}, row
+
+
+@test
 def the_parts_are_all_that_the_processor_does():
     """To 0.1 %: the responses to interrupts alone are 0.7 % at 800 Hz."""
     case = bench_parts.CASES[2]

@@ -245,6 +245,14 @@ def page_text():
     return default_filter.PAGE.held()
 
 
+@test
+def the_page_has_every_filter_in_every_class():
+    numbers = results.numbers_of(page_text())
+    names = {line.split(",")[4] for line in program(f"k {still_stream(10)} 1000 16 1 0 60 truth 0 0").stdout.splitlines()}
+    missing = [(group, name) for group in score.CLASSES for name in names if f"RMSE by class, `{name}`, {group}" not in numbers]
+    assert missing == [], f"{missing}: make default writes the page"
+
+
 def kept_rows():
     """The rows of the last make default with recordings."""
     rows = json.loads(default_filter.JSON.read_text(encoding="ascii")) if default_filter.JSON.is_file() else []

@@ -1,8 +1,12 @@
 """make papers in small: papers 002, 003 and 004 with a few hundred runs against wide bands, and the judge; each with a fault that must be named."""
+import contextlib
 import copy
+import io
 import pathlib
 import subprocess
 import sys
+import time
+import types
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import laws  # noqa: E402
@@ -173,6 +177,55 @@ def a_bad_list_of_bands_is_named_by_line():
 def a_number_that_is_not_finite_is_null_in_the_json():
     rows = [made(value=0.9765), made(value=float("inf")), made(value=3.8e-14)]
     assert [row["value"] for row in papers.as_json("002", rows)] == [0.9765, None, 3.8e-14]
+
+
+@test
+def the_page_holds_what_was_measured():
+    rows = [made(experiment="clean", filter=ROBUST, metric="clean_efficiency", value=0.9765, ci_lo=0.97, ci_hi=0.98),
+            made(value=float("inf"), experiment="step_clean_5_sigma", metric="reacq_p95"),
+            made(metric="k_ef_steady", value=3.8e-14, experiment="printed"), made(published="30-40", verdict="refuted", reason="why")]
+    kept, papers_page.DOCUMENT = papers_page.DOCUMENT, pathlib.Path("build/papers/page.md")
+    begin, end = papers_page.markers("002")
+    try:
+        papers_page.DOCUMENT.write_text(f"before\n{begin}\nold\n{end}\nafter\n", encoding="utf-8")
+        papers_page.write_page("002", rows, types.SimpleNamespace(runs=300, seed=7))
+        text = papers_page.DOCUMENT.read_text(encoding="utf-8")
+    finally:
+        papers_page.DOCUMENT = kept
+    assert text.startswith(f"before\n{begin}\n300 runs per experiment (") and text.endswith(f"\n{end}\nafter\n") and "old" not in text, text
+    for words in (f"| `{ROBUST}` | double | 0.977", "never", "| 30-40 | **refuted** | why |", "diverges", ", seed 7."):
+        assert words in text, f"{words} is not in:\n{text}"
+
+
+@test
+def progress_is_shown_on_a_terminal_only_and_cleared():
+    for on_terminal in (False, True):
+        stream = io.StringIO()
+        stream.isatty = lambda: on_terminal
+        with contextlib.redirect_stderr(stream):
+            papers.show_progress(3.0, 4.0, time.monotonic() - 30.0)
+            assert papers.run_all({}, None) == []
+        assert (" 75 %  10 s left\r\x1b[K" in stream.getvalue()) == on_terminal == bool(stream.getvalue()), stream.getvalue()
+
+
+@test
+def what_cannot_be_run_is_one_sentence():
+    refused(lambda: papers.chosen_of(["nothing", "none"], ["001"]), "no experiment's name contains nothing or none; there are altitude, ")
+    kept, papers.PYTHON = papers.PYTHON, pathlib.Path("build/none/python")
+    try:
+        refused(lambda: rows_of("004", "nothing"), "variable_structure: needs build/none/python, which is not there: sh tools/deps.sh papers")
+    finally:
+        papers.PYTHON = kept
+
+
+@test
+def bad_words_of_the_programs_in_cpp_give_one_sentence():
+    program = papers.PAPERS["004"][0][1]
+    (name, _), *_ = papers.experiments_of([program]).items()
+    for words, sentence in ((["nothing"], "'nothing': no such experiment"), ([name, "--runs", "0"], "--runs: takes a whole number"),
+                            ([name, "--seed"], "--seed: takes a whole number"), ([name, "--hurry", "1"], "--hurry: unknown option")):
+        done = subprocess.run([program, *words], capture_output=True, text=True, timeout=600, check=False)
+        assert done.returncode == 2 and done.stderr.startswith(f"paper004_board: {sentence}") and done.stderr.count("\n") == 1, done
 
 
 @test

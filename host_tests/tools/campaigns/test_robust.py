@@ -63,11 +63,16 @@ def the_page_is_what_a_new_run_gives():
 def the_pictures_show_this_run():
     shown = fresh()[1]
     assert len(shown) == 6 and pictures.faults_of(shown, "make robust") == [], pictures.faults_of(shown, "make robust")
-    # the twins: another number, a file that no run draws
+    # the twins: another number, a file that no run draws, another pictures.py
     other = copy.deepcopy(shown[0])
     other.data[1][ROBUST].angles_cdeg[2100, 0] += 1
     found = pictures.faults_of([other, *shown[1:-1]], "make robust")
     assert len(found) == 2 and str(other.path) in found[0] and f"{shown[-1].path}: not drawn by make robust" == found[1], found
+    kept, pictures.__file__ = pictures.__file__, __file__
+    try:
+        assert all(picture.stale() for picture in shown)
+    finally:
+        pictures.__file__ = kept
 
 
 # --- scores -----------------------------------------------------------------------------------------------------------

@@ -2,14 +2,17 @@
 import pathlib
 import re
 import sys
+import types
 from fractions import Fraction
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 try:
+    import pictures
     import synthesised
 except ImportError as missing:
     sys.exit(f"test_synthesised: {missing.name} is missing: run it by `make test`")
 
+from results import FOLDER
 from system_support import run_all, test
 
 PEOPLE = pathlib.Path("docs/filters-synthesised.md")
@@ -64,6 +67,20 @@ def no_filter_with_a1_below_0_is_under_the_floor():
 @test
 def closed_tables_are_those_of_a_new_run():
     assert "\n".join(synthesised.closed_tables()).rstrip() in TEXT, "make synthesised writes the tables"
+
+
+def faults_of(paths):
+    """Of pictures that are what they should be as far as they are there."""
+    return pictures.faults_of([types.SimpleNamespace(path=path, stale=lambda path=path: not path.is_file()) for path in paths], "make synthesised")
+
+
+@test
+def a_stray_or_missing_picture_is_found():
+    shown = [FOLDER / name for name in re.findall(r"\]\((pictures/[\w-]+\.png)\)", TEXT)]
+    assert len(shown) == 4 and faults_of(shown) == [], faults_of(shown)
+    gone = shown[0].with_name("synthesised-gone.png")
+    assert faults_of([gone, *shown]) == [f"{gone}: does not show what this run gives: make synthesised draws it"]
+    assert faults_of(shown[1:]) == [f"{shown[0]}: not drawn by make synthesised"]
 
 
 if __name__ == "__main__":

@@ -62,6 +62,7 @@ def what_has_no_chance_in_it_comes_out_again():
 @test
 def the_picture_shows_this_flight():
     assert not structure_picture.picture().stale(), "make structure draws it"
+    assert structure_page.PICTURE in TEXT
     # the twin: of another flight it would be drawn anew
     kept = structure_picture.RUN
     structure_picture.RUN = kept + 1

@@ -93,16 +93,23 @@ def git_says_which_sources_have_changed_since():
 def what_is_wrong_with_table_or_page_is_a_finding():
     for name, old, new, words in (
             ("checks/pages.txt", "lib/*.[ch]", "lib/*.z", "checks/pages.txt: lib/*.z: there is no such file"),
+            ("checks/pages.txt", "    tools/p.py\n", "    tools/gone.py\n", "checks/pages.txt: tools/gone.py: there is no such file"),
             ("checks/pages.txt", "docs/typed.md", "docs/gone.md", "No such file or directory: 'docs/gone.md'"),
             ("checks/pages.txt", "docs/results/p.md", "docs/typed.md", "checks/pages.txt:7: docs/typed.md stands there twice"),
             ("checks/pages.txt", " | never", "", "checks/pages.txt:5: a line is PAGE | COMMAND | CI, or @SET"),
             ("checks/pages.txt", "    @lib", "    @libs", "checks/pages.txt:6: @libs is no set above"),
+            ("checks/pages.txt", "@lib\n", "", "checks/pages.txt:2: files of no page"),
             ("checks/pages.txt", "make p", "make r", "docs/results/p.md is written by make p, which is not its row"),
             ("checks/pages.txt", "lib/*.[ch]", "lib/a.c", "docs/results/p.md depends on lib/b.h too, which lib/a.c names"),
+            ("checks/pages.txt", "lib/*.[ch]", "lib/b.h lib/x.h", "docs/results/p.md depends on lib/x.c too, which lib/x.h names"),
             ("tools/p.py", "print", "import q\nprint", "docs/results/p.md depends on tools/q.py too, which tools/p.py names"),
+            ("docs/new.md", "", PAGE, "docs/new.md is written by make p, which is not its row"),
+            ("docs/new.md", "", "<!-- written by make p: begin -->\n", "docs/new.md is written by make p, which is not its row"),
             ("docs/results/new.md", "", "By hand.\n", "docs/results/new.md: no line 'Written by `make ...`'"),
             ("docs/results/p.md", "What.", "[a](../typed.md) [b](https://x.org) [c](gone.md)", "p.md: a link to gone.md, which leads nowhere"),
             ("docs/results/p.md", "What.", "[a](../typed.md#b)", "docs/results/p.md: a link to ../typed.md#b, which leads nowhere"),
+            ("docs/results/p.md", "<!-- sources", "<!-- source", "docs/results/p.md: no line '<!-- sources: HASH -->'"),
+            ("docs/results/p.md", "What.", "<!-- sources: none -->", "docs/results/p.md: two lines '<!-- sources: HASH -->'"),
             ("docs/results/p.md", "<!-- sources: ", "<!-- sources: x", " is no hash of sources")):
         with Tree():
             for extra in ("lib/x.h", "lib/x.c", "tools/q.py"):
@@ -145,6 +152,8 @@ def what_does_not_come_out_again_is_named_by_every_run():
         assert "p: Roll, steps, raw: 1 on the page, 2 in this run\n" in said_of.getvalue(), said_of.getvalue()
         assert page.write(lines("2")) == ["Roll, steps, raw: 1 on the page, 2 in this run"]
         assert page.check(lines("3")) == ["docs/results/p.md: Roll, steps, raw: 2 on the page, 3 in this run"]
+        assert page.check(results.table("Roll", "", ["stream", "raw"], [["ramp", "2"]])) == [
+            "docs/results/p.md: Roll, steps, raw: 2 on the page, not there in this run"]
         assert page.check([*lines("2"), "More."]) == ["docs/results/p.md: its text or its tables differ from those of this run"]
         assert results.numbers_of(page.held()) == {"Roll, steps, raw": "2"}
 

@@ -1,5 +1,5 @@
-"""Pages that commands write: a title that stands twice is refused; the cells of the page of navigation. And the list of what make proof does not
-prove."""
+"""Pages that commands write: a title that stands twice is refused; the cells of the page of the recordings, whose program may fail, and of that of
+navigation. And the list of what make proof does not prove."""
 import contextlib
 import io
 import pathlib
@@ -7,9 +7,11 @@ import re
 import sys
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+from laws import PLAIN, ROBUST  # noqa: E402
 import page_navigation
 import page_sources
 import proof
+import recordings
 import results
 
 from system_support import run_all, test
@@ -32,6 +34,55 @@ def no_page_has_a_title_twice():
         assert str(fault) == "docs/any.md: the title 'Roll' occurs 2 times", fault
     else:
         raise AssertionError("a title twice was taken")
+
+
+def recorded(status):
+    """(status, what it prints, its page) of make recordings' command over a program that ends so after the rows of one recording and two filters."""
+    counts, lines = "1000,20,1,0,30,0,900,0,0.5,0,0,0.0", ["stream,walk,100.0,16,100.0,1000,0,0,0,0"]
+    for name in (PLAIN, ROBUST):
+        lines += [f"{kind},{name},{axis},{counts},10,12.0" for kind in ("filter,walk", "rest,walk,0") for axis in "xyz"]
+        lines += [f"fault,{pool},bad reads 1e-3,{name},0.001,1.500,2.500,1.600,2.600,1.500" for pool in ("at rest", "moving")]
+    lines += [f"tails,walk,0,{axis},1000,2.00,0.01,0.001" for axis in "xyz"]
+    OUT.mkdir(parents=True, exist_ok=True)
+    program, page, text = OUT.resolve() / "program.sh", OUT.resolve() / "page.md", io.StringIO()
+    program.write_text("#!/bin/sh\ncat <<'END'\n" + "\n".join(lines) + f"\nEND\nexit {status}\n", encoding="ascii")
+    program.chmod(0o755)
+    page.unlink(missing_ok=True)
+    kept = recordings.PAGE, recordings.CSV, recordings.PROGRAM, results.KEPT
+    recordings.PAGE, recordings.CSV = results.Results(page, "Of the test", "make recordings", "What."), OUT / "rows.csv"
+    recordings.PROGRAM, results.KEPT = str(program), OUT / f"kept-{status}"
+    try:
+        with contextlib.redirect_stderr(text), contextlib.redirect_stdout(text):
+            status = recordings.main()
+    except (SystemExit, results.Fault) as end:
+        status = getattr(end, "code", str(end))
+    finally:
+        recordings.PAGE, recordings.CSV, recordings.PROGRAM, results.KEPT = kept
+    return status, text.getvalue(), page.read_text(encoding="utf-8") if page.is_file() else None
+
+
+@test
+def the_page_of_the_recordings_holds_what_its_program_says():
+    status, text, page = recorded(0)
+    assert status == 0 and "1 passed, 0 failed" in text, text
+    numbers = results.numbers_of(page)
+    for what, cell in ((f"Gated, walk, `{ROBUST}`", "2/2/2"), (f"Re-acquisitions, longest run of gated samples, walk, `{ROBUST}`", "3; 0.30 s"),
+                       (f"Outside the range of the last second's samples, walk, `{PLAIN}`", "1; 12"), ("The recordings, walk, rows", "1,000"),
+                       (f"Diverged?, `{ROBUST}`, worst share used", "0.50"), ("At rest: false gates, walk from 0 s, beyond 5 sd, %", "0.1/0.1/0.1"),
+                       (f"Faults put in moving, from {recordings.OWN}, bad reads 1e-3, `{ROBUST}`", "1.5 (2.5)"),
+                       (f"Faults put in at rest, from {recordings.OF_PLAIN}, bad reads 1e-3, `{PLAIN}`", "1.6 (2.6)")):
+        assert numbers[what] == cell, (what, numbers)
+
+
+@test
+def a_page_is_written_where_the_program_ran_to_its_end():
+    status, text, page = recorded(1)
+    assert status == 1 and "an estimate left its bounds" in text and "0 passed, 1 failed" in text and page, text
+    assert recorded(recordings.SAID) == (recordings.SAID, "", None)
+    status, text, page = recorded(recordings.ABSENT)
+    assert status == 0 and text.startswith("skipped: 1 (") and page is None, text
+    status, text, page = recorded(9)
+    assert status.endswith("program.sh gave status 9") and page is None, status
 
 
 CHIP = """call init: 1, mean 9000, most 9000 cycles
