@@ -119,8 +119,8 @@ def what_is_typed_makes_no_step_of_the_night_smaller():
     (OUT / "make").write_text('#!/bin/sh\necho "$*|$SAMPLE$ONLY$RUNS$MAKEFLAGS" >> "$CALLS"\necho "1 passed, 0 failed"\n', encoding="ascii")
     calls.unlink(missing_ok=True)
     subprocess.run(["bash", "campaigns/nightly.sh"], capture_output=True, check=True, env={
-        **os.environ, "PATH": f"{OUT.resolve()}:{os.environ['PATH']}", "CALLS": str(calls.resolve()), "NIGHT_PAGE": str(PAGE), "STEPS": "faults papers",
-        "SAMPLE": "60", "ONLY": "x", "RUNS": "9", "MAKEFLAGS": " -- SAMPLE=60"})
+        **os.environ, "PATH": f"{OUT.resolve()}:{os.environ['PATH']}", "CALLS": str(calls.resolve()), "NIGHT_PAGE": str(PAGE),
+        "STEPS": "faults papers", "SAMPLE": "60", "ONLY": "x", "RUNS": "9", "MAKEFLAGS": " -- SAMPLE=60"})
     assert calls.read_text(encoding="ascii") == "papers|\nfaults|\n", calls.read_text(encoding="ascii")
 
 
