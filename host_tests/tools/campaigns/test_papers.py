@@ -216,6 +216,16 @@ def what_cannot_be_run_is_one_sentence():
         refused(lambda: rows_of("004", "nothing"), "variable_structure: needs build/none/python, which is not there: sh tools/deps.sh papers")
     finally:
         papers.PYTHON = kept
+    refused(lambda: papers.output_of(["no-such-word"]), "no-such-word: not found")
+    refused(lambda: papers.output_of(["build/none/program"]), "build/none/program is not built")
+
+
+@test
+def a_parameter_that_a_filter_lacks_is_refused():
+    text = "import sys; sys.path[:0] = open('mk/pythonpath').read().split(); from resilience.filters import fixed; fixed(sys.argv[1], gate_sigma=3.0)"
+    for name, sentence in ((ROBUST, ""), (PLAIN, f"{PLAIN}: has no such parameter\n")):
+        done = subprocess.run([papers.PYTHON, "-c", text, name], capture_output=True, text=True, timeout=600, check=False)
+        assert done.stderr.endswith(sentence) and bool(done.stderr) == bool(sentence), done
 
 
 @test
