@@ -23,7 +23,7 @@ def steps():
 
 
 def rows(text):
-    """{step: the cells behind it}"""
+    """{step: its cells}"""
     lines = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| `")]
     return {step.strip("`"): tuple(cells) for step, *cells in lines}
 

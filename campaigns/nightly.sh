@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.." || exit 1
 who=nightly
 . campaigns/steps.sh || exit 1
 
-# what was typed behind make, or is in the environment, makes no step smaller
+# variables of the command line and the environment must not make a step smaller
 unset MAKEFLAGS MAKEOVERRIDES MFLAGS SAMPLE ONLY RUNS CHANGED BREAKAGES PLANTED PART PROFILES PATIENCE STOP_AFTER RECORDINGS
 only=${STEPS:-}
 unset STEPS

@@ -44,7 +44,7 @@ def markdown(head, rows):
 
 
 def table(title, text, head, rows):
-    """A table under its title; text, if there is any, stands above it."""
+    """A table under its title, below the text, if there is any."""
     above = textwrap.wrap(text, COLUMNS, break_long_words=False, break_on_hyphens=False)
     return [f"## {title}", *above, "", *markdown(head, rows), ""]
 
@@ -82,7 +82,7 @@ def differences(old, new):
 
 
 def no_title_twice(document, lines):
-    """Refuses tables of one title: a number is known by the title that it stands under, so one of them would be lost."""
+    """Refuses two tables with one title: a number is identified by its table's title, so one of them would be lost."""
     titles = [line.lstrip("# ") for line in "\n".join(lines).splitlines() if line.startswith("#")]
     for title in titles:
         if titles.count(title) > 1:

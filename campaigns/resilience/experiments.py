@@ -95,7 +95,7 @@ def agreement_rows(experiment, filters, squares, options):
 
 
 def start_rows(experiment, filters, scenario, options):
-    """Everything that is told of a start."""
+    """All rows of a start."""
     squares, locked = scored(filters, scenario, seeds_of(options.seed, options.runs))
     for metric in WINDOWS:
         yield from ratio_rows(experiment, filters, squares, metric, metric, options)
@@ -166,7 +166,7 @@ def gate_width(options):
         found = ratios(squares[standard], squares, options.seed)
         for f, ratio, (normal, outliers, false_alarms, misses) in list(zip(filters, found, counts))[2:]:
             yield row(experiment, f, "k_ef_steady", Interval(*ratio), options.runs)
-            if f.name == GATED:  # the printed one is locked out too often to tell of its gate
+            if f.name == GATED:  # the printed one is locked out too often for its gate to be judged
                 yield row(experiment, f, "false_alarm", share(false_alarms, normal), options.runs)
                 yield row(experiment, f, "miss", share(misses, outliers), options.runs)
 

@@ -190,7 +190,7 @@ def linear_twin(name, shipping):
         return shipping.parameter(name, parameter)
 
     def drive(power, factor, limit):
-        """By R and per sample of a process noise of power density q, with `factor` times the R told."""
+        """In units of R and per sample, for a process noise of power density q and `factor` times the R given."""
         return min(limit, of("q") / (shipping.rate_hz ** power * (factor * of("r"))))
 
     if name == "kf":

@@ -2,7 +2,7 @@
 the PC, `make t T=NAME` one; campaigns/breakages/breakages.py takes its judges from here.
 
     test_table.py targets [quick]     what make has to build for all, or for the unit tests
-    test_table.py t NAME [WORD...]    builds and runs one; behind a test in C the words are further tests, else they go to its program
+    test_table.py t NAME [WORD...]    builds and runs one; after a test in C, words are further tests; else they go to its program
                                       (system_tests takes parts of names)
 """
 import difflib

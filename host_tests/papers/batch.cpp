@@ -98,7 +98,7 @@ double batch_largest_rate_drive(void)
     return std::ldexp(static_cast<double>(KALMAN_Q22_MAX_UQ26), -26);
 }
 
-// Of FILTER_LIST; NULL behind its end.
+// Of FILTER_LIST; NULL past its end.
 const char *batch_name(int kind)
 {
     return kind < FILTER_KIND_COUNT ? filter_listed_name(static_cast<filter_kind_t>(kind)) : nullptr;

@@ -35,17 +35,30 @@ class Filter
     virtual double step(double y_deg) = 0;
     virtual bool refused() const = 0;
     virtual double gain() const = 0;
-    virtual void tell(bool /*outlier*/) {} // for the clairvoyant, before the step
+    virtual void reveal(bool /*outlier*/) {} // for the clairvoyant, before the step
 };
 
-class DoubleFilter final : public Filter
+// Over a state of either arithmetic, which restarts as it was at first.
+template <typename State> class FilterOf : public Filter
 {
   public:
-    explicit DoubleFilter(const robust_reference_t &initial) : initial_(initial), f_(initial) {}
-    void restart() override
+    explicit FilterOf(const State &initial) : f_(initial), initial_(initial) {}
+    void restart() final
     {
         f_ = initial_;
     }
+
+  protected:
+    State f_;
+
+  private:
+    State initial_;
+};
+
+class DoubleFilter final : public FilterOf<robust_reference_t>
+{
+  public:
+    using FilterOf::FilterOf;
     double step(double y_deg) override
     {
         return robust_reference_step(&f_, y_deg);
@@ -58,24 +71,16 @@ class DoubleFilter final : public Filter
     {
         return f_.gain[0];
     }
-    void tell(bool outlier) override
+    void reveal(bool outlier) override
     {
         f_.outlier = outlier;
     }
-
-  private:
-    robust_reference_t initial_;
-    robust_reference_t f_;
 };
 
-class FixedFilter final : public Filter
+class FixedFilter final : public FilterOf<filter_t>
 {
   public:
-    explicit FixedFilter(const filter_t &initial) : initial_(initial), f_(initial) {}
-    void restart() override
-    {
-        f_ = initial_;
-    }
+    using FilterOf::FilterOf;
     double step(double y_deg) override
     {
         return filter_update(&f_, as_sample(y_deg / lsb_deg)) * (lsb_deg / 65536.0);
@@ -90,10 +95,6 @@ class FixedFilter final : public Filter
         filter_probe(&f_, &probe);
         return probe.gain_uq16 / 65536.0;
     }
-
-  private:
-    filter_t initial_;
-    filter_t f_;
 };
 
 std::uint32_t fixed(double value, int fraction_bits)
@@ -184,7 +185,7 @@ bool score(Filter &f, Realisation &realisation, double back_deg, std::array<doub
     f.restart();
     for (int k = 0; k < samples; k++) {
         const Sample &s = realisation.at(k);
-        f.tell(s.outlier);
+        f.reveal(s.outlier);
         const double error = f.step(s.y) - s.truth;
         // a filter that has left the world of numbers is as wrong as can be
         const double square = std::isfinite(error) ? std::fmin(error * error, 1e12) : 1e12;

@@ -47,7 +47,7 @@ struct Subject {
     std::function<void(const Values &, const tilt_run_t &, tilt_errors_t *, tilt_bank_t *)> judge;
 };
 
-// A filter of the list at 10 Hz, told R, with parameters by their names in the descriptor.
+// A filter of the list at 10 Hz, with R given and parameters by their names in the descriptor.
 filter_t begun(const std::string &name, const std::vector<Parameter> &parameters, const Values &values)
 {
     const filter_kind_t kind = filter_find(name.c_str());

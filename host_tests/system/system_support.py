@@ -64,6 +64,16 @@ def test(function):
     return function
 
 
+def refused(kind, function, *words):
+    """A call that must raise this kind of exception, with these words in its text."""
+    try:
+        function()
+    except kind as fault:
+        assert all(word in str(fault) for word in words), fault
+    else:
+        raise AssertionError(f"not refused; wanted: {words}")
+
+
 def run(*command, expect=0):
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=600)
     if expect is not None:

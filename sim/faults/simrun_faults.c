@@ -53,40 +53,47 @@ static void set_power(bool on)
     sensor_check_rate();
 }
 
-/* Faults of the bytes in progress; false for any other kind. */
-static bool apply_to_transfer(const fault_t *fault)
+/* What the next byte or transfer does wrong once, of a fault that is only that; else NULL. */
+static bool *wrong_once(kind_t kind)
 {
-    switch (fault->kind) {
-    case KIND_HANG:
-        twi_hang(twi, (unsigned)fault->parameter);
-        return true;
+    switch (kind) {
     case KIND_ARB:
-        twi->lose_arbitration = true;
-        return true;
+        return &twi->lose_arbitration;
     case KIND_BUSERR:
-        twi->bus_error = true;
-        return true;
+        return &twi->bus_error;
     case KIND_NACK:
-        twi->nack_address = true;
-        return true;
+        return &twi->nack_address;
     case KIND_NACKDATA:
-        twi->nack_data = true;
-        return true;
+        return &twi->nack_data;
     case KIND_TORN:
-        twi->let_go = true;
-        return true;
+        return &twi->let_go;
     default:
-        return false;
+        return NULL;
+    }
+}
+
+static void reset_mcu(const fault_t *fault)
+{
+    if (fault->kind == KIND_MCUPOWER) {
+        eeprom_leave((eeprom_left_t)fault->parameter);
+        resets_want(RESET_POWER_ON);
+    } else {
+        resets_want(fault->kind == KIND_BROWNOUT ? RESET_BROWN_OUT : RESET_EXTERNAL);
     }
 }
 
 /* Starts a state, or does all of a fault that does not last. */
 static void apply(const fault_t *fault)
 {
-    if (apply_to_transfer(fault)) {
+    bool *wrong = wrong_once(fault->kind);
+    if (wrong != NULL) {
+        *wrong = true;
         return;
     }
     switch (fault->kind) {
+    case KIND_HANG:
+        twi_hang(twi, (unsigned)fault->parameter);
+        break;
     case KIND_UNPLUG:
     case KIND_POWER:
         set_power(false);
@@ -112,12 +119,8 @@ static void apply(const fault_t *fault)
     case KIND_POKE:
         mcu->data[fault->address] = (uint8_t)fault->parameter;
         break;
-    case KIND_MCUPOWER:
-        eeprom_leave((eeprom_left_t)fault->parameter);
-        resets_want(RESET_POWER_ON);
-        break;
     default:
-        resets_want(fault->kind == KIND_BROWNOUT ? RESET_BROWN_OUT : RESET_EXTERNAL);
+        reset_mcu(fault);
         break;
     }
 }

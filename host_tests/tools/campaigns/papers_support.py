@@ -49,15 +49,6 @@ def rule(**changes):
     return {**whole, "low": str(whole["low"]), "high": str(whole["high"])}
 
 
-def refused(function, *words):
-    try:
-        function()
-    except papers.Fault as fault:
-        assert all(word in str(fault) for word in words), fault
-    else:
-        raise AssertionError(f"taken; wanted: {words}")
-
-
 def changed_are_found(paper, rows, arithmetic, changes):
     """Each (filter, metric, factor) makes a number that the judge names; the rows as they are have no fault."""
     assert faults_of(paper, copy.deepcopy(rows)) == []

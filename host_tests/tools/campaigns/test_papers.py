@@ -14,8 +14,8 @@ import papers
 import papers_judge
 import papers_page
 from laws import PLAIN, ROBUST, SLOWEST
-from papers_support import changed_are_found, expected, made, refused, rows_of, rule, value, within
-from system_support import run_all, test
+from papers_support import changed_are_found, expected, made, rows_of, rule, value, within
+from system_support import refused, run_all, test
 
 # as published: the one that starts on its first sample; the linear ones have no gate, and the structurally shortened one loses more
 PUBLISHED = laws.first(lambda name, traits: "FIRST_SAMPLE" in traits)
@@ -170,7 +170,7 @@ def a_bad_list_of_bands_is_named_by_line():
     for line, words in (("a,b,double,m,1\n", "5 fields"), ("a,b,triple,m,1,2,,,\n", "'triple'"), ("a,b,double,m,1,2,30-40,,\n", "has a verdict"),
                         ("a,b,double,m,1,2,30-40,refuted,\n", "a reason")):
         path.write_text(whole + line, encoding="utf-8")
-        refused(lambda: papers_judge.read_expected(path), words, f":{whole.count(chr(10)) + 1}:")
+        refused(papers.Fault, lambda: papers_judge.read_expected(path), words, f":{whole.count(chr(10)) + 1}:")
 
 
 @test
@@ -210,14 +210,16 @@ def progress_is_shown_on_a_terminal_only_and_cleared():
 
 @test
 def what_cannot_be_run_is_one_sentence():
-    refused(lambda: papers.chosen_of(["nothing", "none"], ["001"]), "no experiment's name contains nothing or none; there are altitude, ")
+    refused(papers.Fault, lambda: papers.chosen_of(["nothing", "none"], ["001"]),
+            "no experiment's name contains nothing or none; there are altitude, ")
     kept, papers.PYTHON = papers.PYTHON, pathlib.Path("build/none/python")
     try:
-        refused(lambda: rows_of("004", "nothing"), "variable_structure: needs build/none/python, which is not there: sh tools/deps.sh papers")
+        refused(papers.Fault, lambda: rows_of("004", "nothing"),
+                "variable_structure: needs build/none/python, which is not there: sh tools/deps.sh papers")
     finally:
         papers.PYTHON = kept
-    refused(lambda: papers.output_of(["no-such-word"]), "no-such-word: not found")
-    refused(lambda: papers.output_of(["build/none/program"]), "build/none/program is not built")
+    refused(papers.Fault, lambda: papers.output_of(["no-such-word"]), "no-such-word: not found")
+    refused(papers.Fault, lambda: papers.output_of(["build/none/program"]), "build/none/program is not built")
 
 
 @test
@@ -244,7 +246,7 @@ def paper_004_is_judged_and_its_twins_are_named():
     # the degree of observability alone with the acceptor's numbers, and a fixed sensor with more noise than the second moments allow
     changed_are_found("004", rows, "double", (("degree_only", "rms_median", 0.5), ("gate_then_degree", "rms_median", 4.0), ("fixed_1", "mse", 1.6),
                                               ("channel", "sum_a2_2", 1.001), ("trend_acceptor", "best_sensor", 0.7)))
-    refused(lambda: rows_of("004", "nothing"), "nothing")
+    refused(papers.Fault, lambda: rows_of("004", "nothing"), "nothing")
 
 
 @test

@@ -14,8 +14,8 @@ import papers_judge  # noqa: E402
 import papers_page  # noqa: E402
 import papers_page_000 as synthesis  # noqa: E402
 import laws  # noqa: E402
-from papers_support import expected, made, refused, rows_of, rule, value  # noqa: E402
-from system_support import run_all, test  # noqa: E402
+from papers_support import expected, made, rows_of, rule, value  # noqa: E402
+from system_support import refused, run_all, test  # noqa: E402
 
 WITHOUT_CHANCE = {"000": ("schedules", "table1_search", "equal_noise", "roll_as_angle"), "001": ("altitude",)}
 
@@ -210,7 +210,7 @@ def claims_in_words_are_judged_by_the_number():
     path = pathlib.Path("build/papers/claim.csv")
     for verdict, words in (("refuted", "needs limits for its verdict"), ("reproduced <= soon enough; refuted >= 1", "is no bound")):
         path.write_text(f"e,f,fixed,m,,,half as good,{verdict},why\n", encoding="utf-8")
-        refused(lambda: papers_judge.read_expected(path), words, ":1:")
+        refused(papers_judge.Fault, lambda: papers_judge.read_expected(path), words, ":1:")
     for paper in papers.PAPERS:
         expected(paper)
 
@@ -247,7 +247,7 @@ def parts_of_the_page_are_found_by_their_markers():
         begin, end = papers_page.markers(paper)
         assert papers_page.between(f"a{begin}b{end}c", paper) == ("a", "b", "c")
         for broken in (f"a{end}c", f"a{begin}b{begin}{end}", f"a{begin}b", f"a{end}b{begin}c"):
-            refused(lambda: papers_page.between(broken, paper), begin, end)
+            refused(papers_judge.Fault, lambda: papers_page.between(broken, paper), begin, end)
     assert len({marker for paper in papers.PAPERS for marker in papers_page.markers(paper)}) == 2 * len(papers.PAPERS) == 10
 
 

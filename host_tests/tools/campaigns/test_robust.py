@@ -20,7 +20,7 @@ try:
 except ImportError as missing:
     sys.exit(f"test_robust: {missing.name} is missing: run it by `make test`")
 
-from system_support import run, run_all, test
+from system_support import refused, run, run_all, test
 
 OUT = pathlib.Path("build/robust")
 REPLAY, STREAM = robust_runs.REPLAY, "sim/streams/steps.csv"
@@ -34,15 +34,6 @@ def fresh():
         shown = robust_pictures.contents(streams, runs)
         FRESH["all"] = pictures.on_page(shown) + tables, shown, robust.PAGE.held()
     return FRESH["all"]
-
-
-def refused(function, *words):
-    try:
-        function()
-    except results.Fault as fault:
-        assert all(word in str(fault) for word in words), fault
-    else:
-        raise AssertionError("not refused")
 
 
 # --- page and pictures ------------------------------------------------------------------------------------------------
@@ -203,7 +194,7 @@ def a_cut_stream_is_named_by_its_path():
         short.unlink(missing_ok=True)
         if text is not None:
             short.write_text(text, encoding="ascii")
-        refused(lambda: robust_runs.load_stream(short), "short.csv")
+        refused(results.Fault, lambda: robust_runs.load_stream(short), "short.csv")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-from system_support import needs, run_all, test
+from system_support import needs, refused, run_all, test
 
 needs("papers", "numpy")
 
@@ -18,15 +18,6 @@ G, RE = 9.81, 6.371e6
 
 def near(found, wanted, relative=1e-12):
     assert np.allclose(found, wanted, rtol=relative, atol=0.0), (found, wanted)
-
-
-def refused(function, words):
-    try:
-        function()
-    except ValueError as error:
-        assert words in str(error), error
-    else:
-        raise AssertionError(f"taken; wanted: {words}")
 
 
 # --- observability ----------------------------------------------------------------------------------------------------
@@ -66,8 +57,9 @@ def a_changing_system_is_told_from_n_samples():
     # the twin: in the other order the products tell another state
     assert not np.allclose(np.linalg.pinv(observability.local_observability(steps[::-1], outputs)) @ measured, state, rtol=0.01)
     assert observability.is_observable(matrix) and not observability.is_observable(observability.constant_observability(np.eye(3), [1, 0, 0]))
-    refused(lambda: observability.local_observability(steps[:2], outputs), "4 states takes as many outputs and one transition fewer, not 4 and 2")
-    refused(lambda: observability.local_observability(steps, outputs[:2]), "not 2 and 3")
+    refused(ValueError, lambda: observability.local_observability(steps[:2], outputs),
+            "4 states takes as many outputs and one transition fewer, not 4 and 2")
+    refused(ValueError, lambda: observability.local_observability(steps, outputs[:2]), "not 2 and 3")
 
 
 @test
@@ -218,7 +210,7 @@ def intervals_are_those_of_the_tables():
 def a_seed_gives_the_same_numbers_again():
     first, again, other = (list(experiments.EXPERIMENTS["next_window_stuck_at_zero"][1](200, seed)) for seed in (3, 3, 4))
     assert first == again != other
-    refused(lambda: scenario.fly(1, 1, "half"), "zero or last, not 'half'")
+    refused(ValueError, lambda: scenario.fly(1, 1, "half"), "zero or last, not 'half'")
 
 
 @test
