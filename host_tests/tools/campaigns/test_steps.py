@@ -3,6 +3,7 @@ that each is a target."""
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -21,17 +22,28 @@ esac
 echo "2 passed, 0 failed"
 """
 SCRIPTS = (".ci/run", "campaigns/nightly.sh")
-PAGE = OUT / "nightly.md"
+PAGE = OUT.resolve() / "nightly.md"
+
+
+def tree():
+    """A folder with the scripts and what they call: they remove profiles and results, which must not be those of the checkout."""
+    folder = OUT.resolve() / "tree"
+    for path in (*SCRIPTS, "campaigns/steps.sh", "campaigns/night_page.py"):
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, folder / path)
+    (folder / "tools").mkdir(exist_ok=True)
+    (folder / "tools/deps.sh").write_text("", encoding="ascii")
+    return folder
 
 
 def run_with_make(script, fails="-", silent="-", skips="-", steps=""):
     """(status, what it prints, the steps that it takes)."""
-    OUT.mkdir(parents=True, exist_ok=True)
+    folder = tree()
     make, calls = OUT / "make", (OUT / "calls").resolve()
     make.write_text(MAKE, encoding="ascii")
     make.chmod(0o755)
     calls.unlink(missing_ok=True)
-    done = subprocess.run(["bash", script], capture_output=True, text=True, check=False, env={
+    done = subprocess.run(["bash", script], capture_output=True, text=True, check=False, cwd=folder, env={
         **os.environ, "PATH": f"{OUT.resolve()}:{os.environ['PATH']}", "CALLS": str(calls), "FAILS": fails, "SILENT": silent, "SKIPS": skips,
         "STEPS": steps, "NIGHT_PAGE": str(PAGE)})
     return done.returncode, done.stdout + done.stderr, calls.read_text(encoding="ascii").splitlines() if calls.exists() else []
@@ -49,6 +61,16 @@ def sums_are_those_of_the_steps():
         assert status == 0 and len(calls) >= 10 and text.endswith(f"{2 * len(calls)} passed, 0 failed\n"), text
         status, text, calls = run_with_make(script, skips="soak")
         assert status == 0 and ": 3 skipped, " in text and text.endswith(f"{2 * len(calls) - 2} passed, 0 failed\n"), text
+
+
+@test
+def what_an_earlier_run_left_is_removed_in_the_script_s_own_tree():
+    for script, path in zip(SCRIPTS, ("build/profiles/earlier.csv", "build/mutants/results.jsonl")):
+        left = tree() / path
+        left.parent.mkdir(parents=True, exist_ok=True)
+        left.write_text("", encoding="ascii")
+        run_with_make(script)
+        assert not left.exists(), left
 
 
 @test
@@ -107,7 +129,7 @@ def every_step_of_ci_has_a_budget_and_half_over_it_fails():
 @test
 def a_machine_s_slowness_is_a_whole_number_and_no_step_is_no_success():
     for slower in ("1.5", "0", "-1", "x", "1e3"):
-        done = subprocess.run(["bash", ".ci/run"], capture_output=True, text=True, check=False, env={**os.environ, "SLOWER": slower})
+        done = subprocess.run(["bash", ".ci/run"], capture_output=True, text=True, check=False, cwd=tree(), env={**os.environ, "SLOWER": slower})
         assert done.returncode == 1 and done.stderr.startswith(f"ci: SLOWER={slower}: ") and not done.stdout, done
     done = subprocess.run(["bash", "-c", "who=x; . campaigns/steps.sh; ended"], capture_output=True, text=True, check=False)
     assert done.returncode == 1 and done.stdout.endswith("x: no step was taken\nx: 0 skipped, 0 s\n0 passed, 1 failed\n"), done
@@ -118,7 +140,7 @@ def what_is_typed_makes_no_step_of_the_night_smaller():
     calls = OUT / "sizes"
     (OUT / "make").write_text('#!/bin/sh\necho "$*|$SAMPLE$ONLY$RUNS$MAKEFLAGS" >> "$CALLS"\necho "1 passed, 0 failed"\n', encoding="ascii")
     calls.unlink(missing_ok=True)
-    subprocess.run(["bash", "campaigns/nightly.sh"], capture_output=True, check=True, env={
+    subprocess.run(["bash", "campaigns/nightly.sh"], capture_output=True, check=True, cwd=tree(), env={
         **os.environ, "PATH": f"{OUT.resolve()}:{os.environ['PATH']}", "CALLS": str(calls.resolve()), "NIGHT_PAGE": str(PAGE),
         "STEPS": "faults papers", "SAMPLE": "60", "ONLY": "x", "RUNS": "9", "MAKEFLAGS": " -- SAMPLE=60"})
     assert calls.read_text(encoding="ascii") == "papers|\nfaults|\n", calls.read_text(encoding="ascii")
