@@ -117,7 +117,7 @@
       "lib/adxl345/src/adxl345_integrity.c: RUN_EMPTY = RUN_LIMIT + {v - 1} ",                                         \
       "test_integrity: test_an_int1_that_was_stuck_is_trusted_anew")                                                   \
     X(SENSOR_DEPTH, 33, "docs/faults.md: FIFO that had filled up ({} samples)",                                        \
-      "lib/adxl345/src/adxl345_burst.c: SENSOR_DEPTH {}ul | lib/adxl345/src/adxl345_integrity.c: SENSOR_DEPTH {}u",    \
+      "lib/adxl345/src/adxl345_registers.h: ADXL345_DEPTH {}u",                                                        \
       "test_driver_stamps: test_no_sample_waits_longer_than_the_sensor_is_deep")                                       \
     X(PERIOD_STEPS, 16,                                                                                                \
       "docs/faults.md: the mean of {} samples in a row | docs/protocol.md: of {} samples read on time",                \

@@ -22,8 +22,7 @@
 
 enum { QUEUE_MASK = ADXL345_QUEUE_LENGTH - 1 };
 
-#define SENSOR_DEPTH 33ul /* samples that the sensor can hold (p. 27) */
-#define ASKED_US 256u     /* after a read begins: the sensor has been polled, and the next read is 0.3 ms away */
+#define ASKED_US 256u /* after a read begins: the sensor has been polled, and the next read is 0.3 ms away */
 
 _Static_assert((int)READING_BYTES == (int)I2C_BUS_RX_MAX, "a reading fits");
 
@@ -183,17 +182,21 @@ bool adxl345_burst_register_holds(void)
 
 /*
  * Stamp of a sample that was found waiting without an edge: one period after the previous one, but not before the
- * sensor was last seen empty, and not in the future (the difference wraps).
+ * sensor was last seen empty, not longer ago than the sensor can hold it, and not in the future. The bound counts when
+ * the reading of a full sensor is torn: its Overrun bit is lost with it, and its stamp is where the next one begins.
  */
 static uint32_t waiting_since_us(const struct burst *b, uint32_t now_us)
 {
     uint32_t step_us = adxl345_period_us();
     uint32_t t_us = b->last_us + step_us;
-    uint32_t empty_us = b->begun_us + ASKED_US;
-    if (b->verdict == READING_EMPTY && hal_time_reached(empty_us, t_us)) {
-        t_us = empty_us;
+    uint32_t earliest_us = now_us - ADXL345_DEPTH * step_us;
+    if (b->verdict == READING_EMPTY) {
+        earliest_us = b->begun_us + ASKED_US;
     }
-    if (!b->last_known || now_us - t_us > SENSOR_DEPTH * step_us) {
+    if (hal_time_reached(earliest_us, t_us)) {
+        t_us = earliest_us;
+    }
+    if (!b->last_known || hal_time_reached(t_us, now_us)) {
         t_us = now_us;
     }
     return t_us;

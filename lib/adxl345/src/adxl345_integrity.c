@@ -6,8 +6,6 @@
 #include "hal_drdy.h"
 #include "machine.h"
 
-#define SENSOR_DEPTH 33u /* samples that the sensor can hold (p. 27) */
-
 /*
  * Length at which a run counts. Values above it: in bad_run, the sensor's registers are those after power-on; in
  * empty_run, good readings that must leave INT1 low before it is trusted again.
@@ -152,7 +150,7 @@ MACHINE_APART reading_t adxl345_integrity_judge(const uint8_t reading[READING_BY
         return judge_empty(reading);
     }
     if (reading[READING_FIFO_CTL] != TABLE_FIFO_CTL || reading[READING_FORMAT] != integrity.format ||
-        reading[READING_FIFO_STATUS] > SENSOR_DEPTH || !plausible(&reading[READING_DATA], lsb)) {
+        reading[READING_FIFO_STATUS] > ADXL345_DEPTH || !plausible(&reading[READING_DATA], lsb)) {
         return discard(READING_BAD);
     }
     accept(source, integrity.has_last && same(lsb, last_lsb));

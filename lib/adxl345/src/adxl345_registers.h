@@ -4,6 +4,7 @@
 
 #define ADXL345_ADDRESS_LOW 0x53u  /* ALT ADDRESS to ground (p. 18) */
 #define ADXL345_ADDRESS_HIGH 0x1Du /* ALT ADDRESS to VDD I/O */
+#define ADXL345_DEPTH 33u          /* samples that the sensor can hold (p. 27) */
 
 enum adxl345_register {
     ADXL345_DEVID = 0x00,
