@@ -17,17 +17,12 @@ static double noise_gain(const filter_t *f)
 }
 #endif
 
-/*
- * synth.h: v and v' are x1 - x2 and x2 - x3 of estimates within the bound, and after damping between them.
- */
+/* synth.h: v and v' are the last two steps of the estimate, each within twice its bound. */
 static const char *broken_running_estimates(const filter_t *f)
 {
     const filter_synth_t *s = &f->own.synth;
-    if (filter_fx_abs32(f->x_lsb_q16 - f->rate_lsb) > X_MAX_Q16 + 1U) {
-        return "older x";
-    }
     if (filter_fx_abs32(s->rate_before_lsb_q16) > 2U * X_MAX_Q16) {
-        return "oldest x";
+        return "rate before";
     }
     bool steady = s->count == (uint8_t)SYNTH_STEADY;
     return (!steady && (s->count < (uint8_t)SYNTH_FIRST_GAIN || s->count > (uint8_t)SYNTH_END_GAIN)) ? "count" : NULL;
