@@ -11,6 +11,7 @@ static void make(filter_t *f, int32_t a1_q16, int32_t b0_uq16)
     filter_config_t config = filter_defaults(&filter_law_synth, 1000);
     config.value[SYNTH_A1_Q16] = a1_q16;
     config.value[SYNTH_B0_UQ16] = b0_uq16;
+    config.value[SYNTH_RATE_MAX_LSB_S] = RATE_UNLIMITED_LSB_S;
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_synth, &config));
 }
 
@@ -125,17 +126,39 @@ static void start_ends_at_the_first_gain_that_is_not_above(void)
 static void descriptor_tells_the_binary_points(void)
 {
     filter_config_t config = of_paper_001();
-    TEST_ASSERT_EQUAL_UINT8(3, parameter_count(FILTER_KIND_synth));
+    TEST_ASSERT_EQUAL_UINT8(4, parameter_count(FILTER_KIND_synth));
     const filter_parameter_t parameter[3] = { parameter_at(FILTER_KIND_synth, 0), parameter_at(FILTER_KIND_synth, 1),
                                               parameter_at(FILTER_KIND_synth, 2) };
     TEST_ASSERT_EQUAL_STRING("a1", parameter_name(FILTER_KIND_synth, 0));
     TEST_ASSERT_INT32_WITHIN(5, -3 * (int32_t)(1UL << parameter[0].fraction_bits), 10 * config.value[SYNTH_A1_Q16]);
     TEST_ASSERT_EQUAL_STRING("b0", parameter_name(FILTER_KIND_synth, 1));
     TEST_ASSERT_EQUAL_STRING("r", parameter_name(FILTER_KIND_synth, 2));
+    TEST_ASSERT_EQUAL_STRING("ratemax", parameter_name(FILTER_KIND_synth, 3));
     TEST_ASSERT_TRUE(parameter[0].min < 0 && parameter[1].min > 0 && parameter[2].min > 0);
     TEST_ASSERT_INT32_WITHIN(5, (int32_t)(1UL << parameter[1].fraction_bits),
                              10 * (int32_t)config.value[SYNTH_B0_UQ16]);
     TEST_ASSERT_EQUAL_INT32(3UL << parameter[2].fraction_bits, config.value[SYNTH_R_LSB2_Q8]);
+}
+
+/*
+ * ratemax 800 LSB/s at 100 Hz is 8 LSB a sample, b0 = 1/2: after rest at 0 a sample of 16 gives a rate of 8, one of 18
+ * would give 9. The estimate itself moves all the same, and the next prediction goes on by 8.
+ */
+static void one_sample_turns_the_rate_up_to_its_limit(void)
+{
+    for (int16_t sign = -1; sign <= 1; sign = (int16_t)(sign + 2)) {
+        for (int16_t z_lsb = 14; z_lsb <= 18; z_lsb = (int16_t)(z_lsb + 2)) {
+            filter_t f;
+            filter_config_t config = filter_defaults(&filter_law_synth, 1000);
+            config.value[SYNTH_B0_UQ16] = 32768;
+            TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth, &config));
+            filter_reset(&f, 0);
+            TEST_ASSERT_EQUAL_INT32(sign * z_lsb * 32768L, filter_update(&f, (int16_t)(sign * z_lsb)));
+            TEST_ASSERT_EQUAL_UINT8(z_lsb > 16 ? FILTER_SATURATED : 0, f.flags);
+            int32_t rate_lsb = z_lsb > 16 ? 8 : z_lsb / 2;
+            TEST_ASSERT_EQUAL_INT32(sign * (z_lsb * 32768L + rate_lsb * 65536L), coast(&f));
+        }
+    }
 }
 
 /* Two bad samples among the first five change nothing: the start is their median. */
@@ -297,6 +320,7 @@ int main(void)
     RUN_TEST(start_gains_are_those_of_a_line);
     RUN_TEST(start_ends_at_the_first_gain_that_is_not_above);
     RUN_TEST(descriptor_tells_the_binary_points);
+    RUN_TEST(one_sample_turns_the_rate_up_to_its_limit);
     RUN_TEST(outliers_in_the_start_cost_nothing);
     RUN_TEST(impulse_response_is_that_of_equation_7);
     RUN_TEST(coast_goes_on_along_the_line);

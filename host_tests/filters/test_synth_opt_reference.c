@@ -107,7 +107,7 @@ static void u_schedule_has_its_limit(void)
 /* P0 = ratio R, with R = 4 LSB^2. */
 static void make(filter_t *f, bool u, double ratio)
 {
-    filter_config_t config = { 1000, { u, (int32_t)lround(1024.0 * ratio), 1024 } };
+    filter_config_t config = { 1000, { u, (int32_t)lround(1024.0 * ratio), 1024, RATE_UNLIMITED_LSB_S } };
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_synth_opt, &config));
 }
 
@@ -172,7 +172,7 @@ static void nearest_class_costs_little(void)
         double own[9];
         double sums[2] = { 0.0, 0.0 };
         filter_t f;
-        filter_config_t config = { 1000, { 0, (int32_t)lround(256.0 * ratio), 256 } };
+        filter_config_t config = { 1000, { 0, (int32_t)lround(256.0 * ratio), 256, RATE_UNLIMITED_LSB_S } };
         TEST_ASSERT_TRUE(ratio > 99999.0 || (filter_init(&f, &filter_law_synth_opt, &config) == FILTER_ACCEPTED));
         equal_errors(best, ratio);
         equal_errors(own, ratio);

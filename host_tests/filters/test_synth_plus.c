@@ -139,6 +139,7 @@ static void without_memory_it_is_synth(void)
     uint32_t random = 4711;
     make(&f, 0, 19661, 0, 0);
     config = filter_defaults(&filter_law_synth, 1000);
+    config.value[SYNTH_RATE_MAX_LSB_S] = RATE_UNLIMITED_LSB_S;
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&plain, &filter_law_synth, &config));
     filter_reset(&plain, 0);
     for (uint16_t k = 0; k < 300; k++) {

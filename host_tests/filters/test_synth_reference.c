@@ -55,6 +55,7 @@ static void make(filter_t *f, double a1, double b0, int32_t r_lsb2_q8)
     config.value[SYNTH_A1_Q16] = (int32_t)lround(a1 * 65536.0);
     config.value[SYNTH_B0_UQ16] = (uint16_t)lround(b0 * 65536.0);
     config.value[SYNTH_R_LSB2_Q8] = r_lsb2_q8;
+    config.value[SYNTH_RATE_MAX_LSB_S] = RATE_UNLIMITED_LSB_S;
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_synth, &config));
 }
 

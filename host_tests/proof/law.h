@@ -70,9 +70,13 @@ static inline int32_t tracker_bounded(filter_t *f, int32_t x_lsb_q16);
 */
 void filter_tracker_meet(filter_t *f, int16_t z_lsb);
 
-/*@ requires WITHIN(f->rate_lsb, 3 * X_MAX_Q16) && f->rate_max_lsb <= X_MAX_Q16 && 0 <= step_lsb <= 2 * X_MAX_Q16;
+#ifndef TURN_END
+#define TURN_END X_MAX_Q16 /* the largest limit of the rate that the laws of a file have */
+#endif
+
+/*@ requires WITHIN(f->rate_lsb, 3 * X_MAX_Q16) && f->rate_max_lsb <= TURN_END && 0 <= step_lsb <= 2 * X_MAX_Q16;
     assigns f->rate_lsb, f->flags \from f->rate_lsb, f->rate_max_lsb, f->negative, f->flags, step_lsb;
-    ensures WITHIN(f->rate_lsb, X_MAX_Q16);
+    ensures WITHIN(f->rate_lsb, TURN_END);
 */
 void filter_tracker_turn(filter_t *f, int32_t step_lsb);
 

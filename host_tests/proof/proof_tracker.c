@@ -1,5 +1,6 @@
 /* The tracker, once for every law: any state, any law that keeps what law.h says, any order of calls. */
 #define RATE_END 2147483647
+#define TURN_END 603979776 /* of synth_plus: a rate between two estimates */
 #define CELLS
 #include "law.h"
 
@@ -155,6 +156,10 @@ static void turn_from(int32_t low, int32_t high)
     f.rate_lsb = ANY_S32(low, high);
     f.rate_max_lsb = ANY_U32(0, X_MAX_Q16);
     filter_tracker_turn(&f, 0);
+    //@ check usual: WITHIN(f.rate_lsb, X_MAX_Q16);
+    f.rate_lsb = ANY_S32(low, high);
+    f.rate_max_lsb = ANY_U32(0, TURN_END);
+    filter_tracker_turn(&f, 0);
 }
 
 /*
@@ -164,7 +169,7 @@ void proof_filter_tracker_turn(void)
 {
     filter_t f;
     any_tracked(&f, NULL);
-    f.rate_max_lsb = ANY_U32(0, X_MAX_Q16);
+    f.rate_max_lsb = ANY_U32(0, TURN_END);
     f.negative = false;
     f.rate_lsb = ANY_S32(X_MAX_Q16 + 1L, 3L * X_MAX_Q16);
     filter_tracker_turn(&f, ANY_S32(0, 2L * X_MAX_Q16));

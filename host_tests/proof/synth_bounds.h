@@ -6,6 +6,7 @@
 #define SYNTH_BOUNDS_H
 
 #define RATE_END 603979776    /* 9216 LSB: the difference of two estimates */
+#define TURN_END RATE_END
 #define MEMORY_Q16 1207959552 /* 18432 LSB */
 #define BENT_END 1835008000   /* 28000 LSB: both, and what their rounding in two halves adds */
 #define CELLS
@@ -26,9 +27,9 @@
 /*@ requires WITHIN(f->x_lsb_q16, X_MAX_Q16);
     requires WITHIN(f->rate_lsb, BENT_END);
     requires SAMPLE(z_lsb);
-    requires f->size_lsb_uq16 <= SIZE_END && FLAG(f->negative);
+    requires f->size_lsb_uq16 <= SIZE_END && FLAG(f->negative) && f->rate_max_lsb <= TURN_END;
     assigns f->x_lsb_q16, f->rate_lsb, f->size_lsb_uq16, f->negative, f->flags \from f->x_lsb_q16, f->rate_lsb,
-            f->size_lsb_uq16, f->negative, f->flags, f->gain_uq16, z_lsb, what;
+            f->size_lsb_uq16, f->negative, f->flags, f->gain_uq16, f->rate_max_lsb, z_lsb, what;
     ensures WITHIN(f->x_lsb_q16, X_MAX_Q16) && WITHIN(f->rate_lsb, RATE_END);
     ensures f->size_lsb_uq16 <= SIZE_END && FLAG(f->negative);
 */

@@ -99,6 +99,9 @@ typedef struct {
 } envelope_facts_t;
 #endif
 
+/* The largest ratemax: no limit of its own up to 217 Hz, where the range of a sample is less. */
+enum { RATE_UNLIMITED_LSB_S = 1000000 };
+
 /* What no descriptor tells of a law: support_law_NAME.c has them. */
 typedef struct {
     int32_t mirror_lsb_q16;    /* largest difference between the answers to a sequence and to its mirror image */

@@ -24,6 +24,7 @@ KALMAN = {2: ("kf", "q_lsb2_s3", 3), 3: ("kf3", "q_lsb2_s5", 5)}
 THREE_FINE_FROM_DHZ = 1000  # the unit of the acceleration changes here
 OPT_LIMITS = ((0.0, 2 / 3), (-1 / 6, 11 / 13))  # of synth_opt: exact, variant U
 START_RATE_LSB_S, P0_Q8_MAX = 200, 25_600_000
+RATE_MAX_LSB_S = 1_000_000  # the largest: a design is linear, without a limit of the rate
 IMAGES = pathlib.Path(__file__).resolve().parents[2] / "mk" / "images.mk"
 ROUNDING = 1e-12  # of a bound computed in floating point
 FIRMWARE_RATES_HZ = (12.5, 25, 50, 100, 200, 400, 800)
@@ -101,7 +102,8 @@ def stored_gain(f, common, error_max, noise_max, fixed_a=False):
         chosen = min(pairs, key=lambda pair: worth(gain_filter(*pair), error_max, noise_max))
         if worth(gain_filter(*chosen), error_max, noise_max)[0]:
             raise Unfit("no values in 1/65536 near the design keep the bound; nearest: a bound 0.1 % wider")
-    fields = {"rate_dhz": common["rate_dhz"], "b0_uq16": chosen[0], "a1_q16": chosen[1], "r_lsb2_q8": common["r_lsb2_q8"]}
+    fields = {"rate_dhz": common["rate_dhz"], "b0_uq16": chosen[0], "a1_q16": chosen[1], "r_lsb2_q8": common["r_lsb2_q8"],
+              "rate_max_lsb_s": RATE_MAX_LSB_S}
     return Configuration("synth", fields, gain_filter(*chosen))
 
 
@@ -159,7 +161,8 @@ def stored_opt(f, common):
     start = min(max(round(256 * (2 * START_RATE_LSB_S * period_s) ** 2 + 0.29 * r), 3), P0_Q8_MAX)
     stored = gain_filter(*((43691, 0), (55454, -10923))[variant])
     notes = [f"P0 for an axis that starts at {START_RATE_LSB_S} LSB/s, as shipped; `schedule` shows the gains of the start"]
-    return Configuration("synth_opt", {"rate_dhz": common["rate_dhz"], "variant_u": variant, "p0_lsb2_q8": start, "r_lsb2_q8": r}, stored, notes)
+    fields = {"rate_dhz": common["rate_dhz"], "variant_u": variant, "p0_lsb2_q8": start, "r_lsb2_q8": r, "rate_max_lsb_s": RATE_MAX_LSB_S}
+    return Configuration("synth_opt", fields, stored, notes)
 
 
 def steady_kalman(v, drive):

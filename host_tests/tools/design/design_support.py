@@ -77,7 +77,7 @@ class Probe(ctypes.Structure):
 
 # what the tool calls the value of each parameter's name as typed
 FIELDS = {"a1": "a1_q16", "b0": "b0_uq16", "b1": "b1_q16", "b2": "b2_q16", "r": "r_lsb2_q8", "q": "q_lsb2_s3", "k": "k", "u": "variant_u",
-          "p0": "p0_lsb2_q8"}
+          "p0": "p0_lsb2_q8", "ratemax": "rate_max_lsb_s"}
 
 
 def field_of(p):

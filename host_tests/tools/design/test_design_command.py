@@ -63,7 +63,8 @@ def the_library_and_the_tool_refuse_the_same():
             assert configuration.gain_filter(b0, a1).stable() == wanted, (b0, a1)
         seen[ok] += 1
     assert min(seen) > 200, seen
-    ranges = {"b0_uq16": configuration.B0, "a1_q16": configuration.A1, "r_lsb2_q8": configuration.R_Q8}
+    ranges = {"b0_uq16": configuration.B0, "a1_q16": configuration.A1, "r_lsb2_q8": configuration.R_Q8,
+              "rate_max_lsb_s": (10, configuration.RATE_MAX_LSB_S)}
     assert LIBRARY.ranges(ONE_GAIN) == ranges, LIBRARY.ranges(ONE_GAIN)
     assert LIBRARY.ranges(PLAIN) == {"r_lsb2_q8": configuration.R_Q8, "q_lsb2_s3": configuration.Q}
     for field, (low, high) in ranges.items():

@@ -117,8 +117,13 @@ enum filter_mixture_parameter {
     MIXTURE_CLEAN_UQ16,
     MIXTURE_STAY_UQ16 /* not of af */
 };
-enum filter_synth_parameter { SYNTH_A1_Q16, SYNTH_B0_UQ16, SYNTH_R_LSB2_Q8 };
-enum filter_synth_opt_parameter { SYNTH_OPT_VARIANT_U, SYNTH_OPT_P0_LSB2_Q8, SYNTH_OPT_R_LSB2_Q8 };
+enum filter_synth_parameter { SYNTH_A1_Q16, SYNTH_B0_UQ16, SYNTH_R_LSB2_Q8, SYNTH_RATE_MAX_LSB_S };
+enum filter_synth_opt_parameter {
+    SYNTH_OPT_VARIANT_U,
+    SYNTH_OPT_P0_LSB2_Q8,
+    SYNTH_OPT_R_LSB2_Q8,
+    SYNTH_OPT_RATE_MAX_LSB_S
+};
 enum filter_synth_plus_parameter {
     SYNTH_PLUS_K,
     SYNTH_PLUS_B0_UQ16,

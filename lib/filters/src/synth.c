@@ -10,7 +10,8 @@
  * no measurement would reach the prediction. Not robust: every outlier passes with the gain b0. With a1 <= 0 the
  * variance of the estimate cannot fall below R / 2, whatever b0 (notes on the papers: synthesised-filter).
  *
- * Parameters a1 (0: a straight line through two estimates), b0, r (for start and probe). Together a1 and b0 must lie
+ * Parameters a1 (0: a straight line through two estimates), b0, r (for start and probe), ratemax (not in the papers;
+ * 1000000: as published up to 217 Hz). Together a1 and b0 must lie
  * inside the stability region: 1 + 2 a1 (1 - b0) > 0, which is exact within their ranges. The papers' b0 > -a1 - 0.3 is
  * only sufficient. Paper 001's preset is a1 = -0.3, b0 = 0.1 (-19661, 6554): it overshoots a step by 69 % and hardly
  * smooths (variance 0.82 R).
@@ -25,7 +26,7 @@
 
 LAW_PARAMETER(a1, "a1\0", 16, 0, -65535, 65535, 0);
 LAW_PARAMETER(b0, "b0\0", 16, 0, SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16, 19661);
-static const filter_parameter_t *const parameters[] IN_FLASH = { &a1, &b0, &filter_parameter_r };
+static const filter_parameter_t *const parameters[] IN_FLASH = { &a1, &b0, &filter_parameter_r, &filter_parameter_ratemax };
 
 /* |a1| (1 - b0), UQ0.32, exact. */
 static uint32_t memory_uq32(uint16_t b0_uq16, uint16_t a1_uq16)
@@ -90,6 +91,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
     s->a1_uq16 = magnitude(config->value[SYNTH_A1_Q16]);
     s->a1_negative = config->value[SYNTH_A1_Q16] < 0;
     s->b0_uq16 = (uint16_t)config->value[SYNTH_B0_UQ16];
+    filter_tracker_limit_rate(f, (uint32_t)config->value[SYNTH_RATE_MAX_LSB_S], 16);
     filter_set_noise(f, (uint32_t)config->value[SYNTH_R_LSB2_Q8]);
 }
 
@@ -121,7 +123,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 }
 
 const filter_law_t filter_law_synth IN_FLASH = { .name = "synth",
-                                                 .parameter_count = 3,
+                                                 .parameter_count = 4,
                                                  .worst_cycles = 670,
                                                  .parameters = parameters,
                                                  .together = together,

@@ -3,8 +3,9 @@
  *
  *   x_e = 2 x1 - x2 + addend,   u = z - x_e,   x = x_e + b0 u
  *
- * where the addend is what distinguishes the filters. In the tracker's state this is v = x1 - x2: w1 = w2 = b0.
- * Internal to the library.
+ * where the addend is what distinguishes the filters. In the tracker's state this is v = x1 - x2: w1 = w2 = b0. The
+ * papers have no limit of v. With one (ratemax of synth and synth_opt) a single outlier moves the estimate by b0 u, but
+ * the predictions after it go on by no more than the limit. Internal to the library.
  */
 #ifndef SYNTH_H
 #define SYNTH_H
@@ -36,7 +37,8 @@ uint16_t filter_synth_next_gain_uq16(filter_t *f);
 
 /*
  * One step: prediction by v, to which the law has added its addend, |addend| <= 18432 LSB (with |2 x1 - x2| <= 13824
- * the sum stays below 2^31 in Q16), then the correction with f->gain_uq16, or none without a sample.
+ * the sum stays below 2^31 in Q16), then the correction of x and v with f->gain_uq16, or none without a sample, and the
+ * limit of v. At its bound x takes what v has too much from it.
  */
 void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what);
 

@@ -14,7 +14,7 @@
  *
  * both with a1 in [-1/3, 0] and b0 in [1/2, 1), where any switching is stable. The steady gains do not depend on R: a
  * changed R affects only the start. Not robust: every outlier passes with the gain b0. Parameters u (0: exact, 1:
- * variant U), p0, r (for start and probe).
+ * variant U), p0, r (for start and probe), ratemax (as in synth).
  *
  * Scaling:
  *   a1, b0   UQ0.16 magnitudes of the table, within 2^-17 of the schedule's for its class of P0 / R. With the class's
@@ -34,7 +34,7 @@ enum { LIMIT = (int)SYNTH_OPT_COMMON + (int)SYNTH_OPT_STEPS };
 
 LAW_PARAMETER(u, "u\0", 0, 0, 0, 1, 0);
 LAW_PARAMETER(p0, "p0\0LSB2", 8, 0, 3, 25600000, 0);
-static const filter_parameter_t *const parameters[] IN_FLASH = { &u, &p0, &filter_parameter_r };
+static const filter_parameter_t *const parameters[] IN_FLASH = { &u, &p0, &filter_parameter_r, &filter_parameter_ratemax };
 
 static void standard(filter_config_t *config)
 {
@@ -54,6 +54,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
         s->a1_uq16 = flash_u16(&u_a1_uq16[LIMIT]);
         s->a1_negative = true;
     }
+    filter_tracker_limit_rate(f, (uint32_t)config->value[SYNTH_OPT_RATE_MAX_LSB_S], 16);
     filter_set_noise(f, (uint32_t)config->value[SYNTH_OPT_R_LSB2_Q8]);
 }
 
@@ -127,7 +128,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 }
 
 const filter_law_t filter_law_synth_opt IN_FLASH = { .name = "synth_opt",
-                                                     .parameter_count = 3,
+                                                     .parameter_count = 4,
                                                      .worst_cycles = 670,
                                                      .parameters = parameters,
                                                      .standard = standard,

@@ -132,6 +132,7 @@ static void set_up(filter_t *f, const filter_config_t *config)
     s->of.plus.b1_negative = config->value[SYNTH_PLUS_B1_Q16] < 0;
     s->of.plus.b2_uq16 = (uint16_t)filter_fx_abs32(config->value[SYNTH_PLUS_B2_Q16]);
     s->of.plus.b2_negative = config->value[SYNTH_PLUS_B2_Q16] < 0;
+    f->rate_max_lsb = 2U * (uint32_t)TRACKER_X_MAX_LSB_Q16; /* between two estimates: no limit */
     filter_set_noise(f, (uint32_t)config->value[SYNTH_PLUS_R_LSB2_Q8]);
 }
 
