@@ -3,10 +3,10 @@
 #include "adxl345.h"
 #include "machine.h"
 
-enum { STEPS = 16 };
+enum { STEPS = 16 }; /* their sum is the period in 1/16 us */
 
 static struct period {
-    uint32_t us_q8;
+    uint32_t us_q4;
     uint32_t shortest_us; /* shortest plausible step between two samples */
     uint16_t step_span_us;
     uint32_t newest_us;
@@ -27,7 +27,7 @@ void adxl345_period_start(uint16_t half_us)
 {
     struct period *p = here();
     uint32_t nominal_us = (uint32_t)half_us * 2u;
-    p->us_q8 = nominal_us << 8;
+    p->us_q4 = nominal_us << 4;
     p->step_span_us = half_us >> 1;
     p->shortest_us = nominal_us - (half_us >> 2);
     p->steps = 0;
@@ -48,7 +48,7 @@ void adxl345_period_sample(uint32_t t_us, bool exact)
             p->steps++;
             return;
         }
-        p->us_q8 = (t_us - p->measured_from_us) * (256u / STEPS);
+        p->us_q4 = t_us - p->measured_from_us;
         p->measured = true;
     }
     p->steps = exact;
@@ -57,12 +57,12 @@ void adxl345_period_sample(uint32_t t_us, bool exact)
 
 MACHINE_APART uint32_t adxl345_period_us(void)
 {
-    return period.us_q8 >> 8;
+    return period.us_q4 >> 4;
 }
 
-uint32_t adxl345_period_us_q8(void)
+uint32_t adxl345_period_us_q4(void)
 {
-    return period.us_q8;
+    return period.us_q4;
 }
 
 bool adxl345_period_measured(void)
