@@ -17,7 +17,7 @@ static bool configure(const filter_choice_t *choice, filter_config_t *config, fi
     const filter_law_t *law = filter_listed(kind);
     uint8_t own = (uint8_t)kind == choice->filter ? choice->own : 0;
     for (bool legal = true;; legal = false) {
-        *config = filter_defaults(law, rate_dhz);
+        filter_set_defaults(config, law, rate_dhz);
         for (uint8_t which = 0; own != 0; which++, own >>= 1) {
             if (own & 1u) {
                 config->value[which] = (int32_t)choice->parameters[which];

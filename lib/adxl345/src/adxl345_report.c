@@ -68,12 +68,12 @@ uint8_t adxl345_foreign_id(void)
     return adxl345_driver_state()->foreign_id;
 }
 
-/* 1e8 us x 256 over the period, both divided by 8 to fit 32 bits; that rounds by 1.3e-5 at 800 Hz, less below. */
+/* 1e8 us over the period. */
 uint32_t adxl345_rate_chz(void)
 {
     if (!adxl345_period_measured()) {
         return 0;
     }
-    uint32_t eighth_us_q8 = (adxl345_period_us_q8() + 4u) >> 3;
-    return (UINT32_C(3200000000) + (eighth_us_q8 >> 1)) / eighth_us_q8;
+    uint32_t us_q4 = adxl345_period_us_q4();
+    return (UINT32_C(1600000000) + (us_q4 >> 1)) / us_q4;
 }

@@ -160,8 +160,12 @@ enum filter_answer {
     FILTER_REFUSED_FIRST = 3
 };
 
-/* Defaults of a law at an output data rate (FILTER_RATE_MIN_DHZ..MAX). */
+/*
+ * Defaults of a law at an output data rate (FILTER_RATE_MIN_DHZ..MAX): as a value, or written into a configuration,
+ * which saves its copies.
+ */
 filter_config_t filter_defaults(const filter_law_t *law, uint16_t rate_dhz);
+void filter_set_defaults(filter_config_t *config, const filter_law_t *law, uint16_t rate_dhz);
 
 /*
  * Sets up a filter, which then begins to warm up. The configuration is checked first: any answer but FILTER_ACCEPTED

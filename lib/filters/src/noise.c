@@ -124,11 +124,11 @@ static bool follow(noise_t *n)
     return true;
 }
 
-/* Uses pointers: with indices the loop would be unrolled, 60 bytes more. */
+/* Uses a pointer: with indices the loop would be unrolled, 60 bytes more. */
 static void remember(noise_t *n, int16_t z_lsb)
 {
     int16_t *at = &n->history_lsb[HISTORY - 1U];
-    for (; at != n->history_lsb; at--) {
+    for (uint8_t left = HISTORY - 1U; left != 0U; left--, at--) {
         at[0] = at[-1];
     }
     at[0] = z_lsb;

@@ -55,19 +55,26 @@ static int32_t flash_i32(const int32_t *p)
     return (int32_t)flash_u32((const uint32_t *)p);
 }
 
-filter_config_t filter_defaults(const filter_law_t *law, uint16_t rate_dhz)
+void filter_set_defaults(filter_config_t *config, const filter_law_t *law, uint16_t rate_dhz)
 {
-    filter_config_t config = { rate_dhz, { 0 } };
-    for (uint8_t i = filter_parameter_count(law); i != 0U;) {
-        i--;
+    filter_tracker_clear(config, sizeof *config);
+    config->rate_dhz = rate_dhz;
+    int32_t *value = config->value;
+    for (uint8_t i = 0; i < filter_parameter_count(law); i++) {
         const filter_parameter_t *parameter = filter_parameter(law, i);
-        config.value[i] = (parameter == &filter_parameter_r) ? (int32_t)filter_tracker_default_r_lsb2_q8(rate_dhz)
-                                                             : flash_i32(&parameter->standard);
+        *value++ = (parameter == &filter_parameter_r) ? (int32_t)filter_tracker_default_r_lsb2_q8(rate_dhz)
+                                                      : flash_i32(&parameter->standard);
     }
     void (*standard)(filter_config_t *) = FLASH_FUNCTION(&law->standard);
     if (standard != NULL) {
-        standard(&config);
+        standard(config);
     }
+}
+
+filter_config_t filter_defaults(const filter_law_t *law, uint16_t rate_dhz)
+{
+    filter_config_t config;
+    filter_set_defaults(&config, law, rate_dhz);
     return config;
 }
 
