@@ -302,18 +302,34 @@ static void find_angles(tilt_t *tilt, const int32_t lsb_q8[3], int32_t a_q8[3])
     tilt_angles(tilt, a_q8);
 }
 
+/* Adds what the acceleration of this row and the pipeline's state say. */
+static uint16_t with_state(uint16_t flags, const int32_t a_q8[3])
+{
+    if (!tilt_gravity_plausible(a_q8)) {
+        flags |= ROW_NOT_GRAVITY;
+    }
+    if (pipeline.tilt.roll_undefined) {
+        flags |= ROW_ROLL_UNDEFINED;
+    }
+    if (pipeline.warm_rows != 0) {
+        flags |= ROW_WARMING_UP;
+    }
+    return flags;
+}
+
 void pipeline_row(row_t *row)
 {
     int32_t estimates_q8[AXES];
     static int32_t a_q8[AXES]; /* cheaper to access than on the stack */
     int32_t *estimate = estimates_q8;
+    MACHINE_POINTER(row); /* with its address in a register, each access takes half the code */
     for (const tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
         *estimate++ = tilt_axis_estimate_q8(axis);
     }
-    row->flags = pipeline.flags;
+    uint16_t flags = pipeline.flags;
 #if SUPERVISOR
     if (supervisor_complete(pipeline.calibration, estimates_q8)) {
-        row->flags |= ROW_LEFT_OUT;
+        flags |= ROW_LEFT_OUT;
     }
 #endif
     find_angles(&pipeline.tilt, estimates_q8, a_q8);
@@ -324,9 +340,7 @@ void pipeline_row(row_t *row)
     }
     row->roll_cdeg = pipeline.tilt.roll_cdeg;
     row->pitch_cdeg = pipeline.tilt.pitch_cdeg;
-    row->flags |= tilt_gravity_plausible(a_q8) ? 0u : ROW_NOT_GRAVITY;
-    row->flags |= pipeline.tilt.roll_undefined ? ROW_ROLL_UNDEFINED : 0u;
-    row->flags |= pipeline.warm_rows != 0 ? ROW_WARMING_UP : 0u;
+    row->flags = with_state(flags, a_q8);
 }
 
 void pipeline_row_done(void)
