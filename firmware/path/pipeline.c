@@ -38,7 +38,7 @@ static struct {
     uint8_t work;     /* work_t */
     uint8_t to_begin; /* axes that are still to get a new filter, the last of them first */
     bool cold;        /* all of them before the next sample, with a new noise estimate; else one with each sample */
-    bool turn;        /* one with this sample */
+    bool turn;        /* one of them now */
     uint8_t new_kind; /* filter_kind_t */
     bool own_r;       /* R is the user's, not the estimated one */
     bool is_stuck;    /* the newest sample has ROW_STUCK */
@@ -92,7 +92,7 @@ uint32_t pipeline_newest_us(void)
 static void begin_all(bool cold)
 {
     pipeline.cold = cold;
-    pipeline.turn = false;
+    pipeline.turn = cold;
     pipeline.to_begin = AXES;
 }
 
@@ -134,12 +134,12 @@ static MACHINE_APART void begin_axis(tilt_axis_t *axis)
 static bool begin_next(void)
 {
     uint8_t left = pipeline.to_begin;
-    if (left == 0 || !(pipeline.turn || pipeline.cold)) {
+    if (left == 0 || !pipeline.turn) {
         return false;
     }
     left--;
     pipeline.to_begin = left;
-    pipeline.turn = false;
+    pipeline.turn = pipeline.cold;
     tilt_axis_t *axis = &pipeline.axes[left];
     if (pipeline.cold) {
         filter_noise_init(&axis->noise, pipeline.rate_dhz, left == 2);
