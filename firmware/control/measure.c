@@ -170,7 +170,7 @@ void measure_stop(void)
 
 static void solve(void)
 {
-    measure_outcome_t outcome = calibrate_step(&measure.six);
+    measure_outcome_t outcome = calibrate_step(&here()->six);
     if (outcome != MEASURE_BEGUN) {
         end(outcome);
     }
