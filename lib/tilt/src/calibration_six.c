@@ -14,7 +14,7 @@
 #define ACROSS_MAX_Q28 (ONE_Q28 / 4U) /* sin(30 degrees)^2: at 20 degrees off it stays below this in every round */
 
 enum { ROUNDS = 6, RESIDUAL_MAX_Q14 = 160 };
-enum { MG_OF_Q14_UQ16 = 4000 }; /* 1000 / 2^14 */
+enum { HALF_MG_OF_Q14_UQ16 = 8000 }; /* 1000 / 2^14 mg, in halves */
 
 /*
  * Two readings of an axis, Q4, are 6,014 to 10,560 apart for legal scales and 20 degrees. Others cannot become legal,
@@ -101,7 +101,7 @@ calibration_verdict_t calibration_six_end(const calibration_six_t *six, calibrat
     if (six->verdict.why != (uint8_t)CALIBRATION_GOOD) {
         return six->verdict;
     }
-    *residual_mg = filter_fx_mul16_uq16(six->off_q14, MG_OF_Q14_UQ16);
+    *residual_mg = (uint16_t)((filter_fx_high_u16(six->off_q14, HALF_MG_OF_Q14_UQ16) + 1U) >> 1);
     if (six->off_q14 > RESIDUAL_MAX_Q14) {
         return calibration_verdict(CALIBRATION_RESIDUAL, six->where);
     }
