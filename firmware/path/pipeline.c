@@ -164,11 +164,10 @@ void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t r
     begin_all(cold);
 }
 
-void pipeline_start(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g)
+void pipeline_forget(void)
 {
     pipeline.has_sample = false;
     pipeline.stuck = 0;
-    pipeline_change(choice, rate_dhz, range_g);
 }
 
 static void count_sample(uint8_t flags)
