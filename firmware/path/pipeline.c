@@ -18,13 +18,7 @@ enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_retime; 1 degree */
 /* What pipeline_work is to take through the filters: a sample, or the place of a missing one. */
 typedef enum { WORK_NONE, WORK_SAMPLE, WORK_COAST } work_t;
 
-static struct {
-    tilt_axis_t axes[AXES];
-    uint16_t looked_lsb_q2[AXES]; /* the estimates one second ago */
-    calibration_applied_t applied;
-#if SUPERVISOR
-    const calibration_t *calibration; /* the one in force */
-#endif
+static struct pipeline {
     const filter_choice_t *choice;
     adxl345_sample_t newest; /* or the time of the missing one, with the last readings */
     tilt_t tilt;
@@ -44,7 +38,21 @@ static struct {
     bool is_stuck;    /* the newest sample has ROW_STUCK */
     uint8_t stuck;    /* samples with ROW_STUCK in a row before this one, up to HUNG_SAMPLES */
     bool has_sample;
+    uint16_t looked_lsb_q2[AXES]; /* the estimates one second ago */
+#if SUPERVISOR
+    const calibration_t *calibration; /* the one in force */
+#endif
+    calibration_applied_t applied;
+    tilt_axis_t axes[AXES];
 } pipeline;
+
+/* With its address in a register, each access takes half the code, but not to what lies behind 64 bytes. */
+static inline struct pipeline *here(void)
+{
+    struct pipeline *p = &pipeline;
+    MACHINE_POINTER(p);
+    return p;
+}
 
 _Static_assert((int)TILT_GATED == (int)ROW_GATED && (int)TILT_COASTED == (int)ROW_COASTED &&
                    (int)TILT_REACQUIRED == (int)ROW_REACQUIRED && (int)TILT_CLIPPED == (int)ROW_CLIPPED &&
@@ -91,9 +99,10 @@ uint32_t pipeline_newest_us(void)
  */
 static void begin_all(bool cold)
 {
-    pipeline.cold = cold;
-    pipeline.turn = cold;
-    pipeline.to_begin = AXES;
+    struct pipeline *p = here();
+    p->cold = cold;
+    p->turn = cold;
+    p->to_begin = AXES;
 }
 
 void pipeline_retime(uint32_t period_us)
@@ -151,16 +160,17 @@ static bool begin_next(void)
 /* The filters continue from the old output, if there is one, and so do the noise estimates unless the rate is new. */
 void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g)
 {
-    bool cold = !pipeline.has_sample || rate_dhz != pipeline.rate_dhz;
+    struct pipeline *p = here();
+    bool cold = !p->has_sample || rate_dhz != p->rate_dhz;
     if (cold) {
-        pipeline.true_dhz = rate_dhz;
-        pipeline.calls_off = 0;
+        p->true_dhz = rate_dhz;
+        p->calls_off = 0;
     }
-    pipeline.choice = choice;
-    pipeline.new_kind = choice->filter;
-    pipeline.rate_dhz = rate_dhz;
-    pipeline.warm_rows = WARM_ROWS;
-    pipeline.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
+    p->choice = choice;
+    p->new_kind = choice->filter;
+    p->rate_dhz = rate_dhz;
+    p->warm_rows = WARM_ROWS;
+    p->rail_high_lsb = (int16_t)(range_g * 256U - 1U);
     begin_all(cold);
 }
 
@@ -198,12 +208,13 @@ void pipeline_calibrate(const calibration_t *calibration)
  */
 static bool hung(void)
 {
-    bool stuck = pipeline.is_stuck;
-    bool back = pipeline.stuck == HUNG_SAMPLES && !stuck;
+    struct pipeline *p = here();
+    bool stuck = p->is_stuck;
+    bool back = p->stuck == HUNG_SAMPLES && !stuck;
     if (!stuck) {
-        pipeline.stuck = 0;
-    } else if (pipeline.stuck != HUNG_SAMPLES) {
-        pipeline.stuck++;
+        p->stuck = 0;
+    } else if (p->stuck != HUNG_SAMPLES) {
+        p->stuck++;
     }
     return back;
 }
@@ -274,9 +285,10 @@ void pipeline_sample(const adxl345_sample_t *sample)
 
 void pipeline_flag(uint16_t flags)
 {
-    pipeline.flags |= flags;
+    struct pipeline *p = here();
+    p->flags |= flags;
     if (flags & ROW_STUCK) {
-        pipeline.is_stuck = true;
+        p->is_stuck = true;
     }
 }
 
@@ -344,9 +356,10 @@ void pipeline_row(row_t *row)
 
 void pipeline_row_done(void)
 {
-    pipeline.flags = 0;
-    if (pipeline.warm_rows != 0) {
-        pipeline.warm_rows--;
+    struct pipeline *p = here();
+    p->flags = 0;
+    if (p->warm_rows != 0) {
+        p->warm_rows--;
     }
 }
 
