@@ -132,7 +132,10 @@ static MACHINE_APART void begin_axis(tilt_axis_t *axis)
     choice_begin(pipeline.choice, &axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
     uint32_t r_lsb2_q8 = choice_r_lsb2_q8(pipeline.choice);
     pipeline.own_r = r_lsb2_q8 != 0;
-    filter_set_noise(&axis->filter, r_lsb2_q8 != 0 ? r_lsb2_q8 : filter_noise_r_lsb2_q8(&axis->noise));
+    if (r_lsb2_q8 == 0) {
+        r_lsb2_q8 = filter_noise_r_lsb2_q8(&axis->noise);
+    }
+    filter_set_noise(&axis->filter, r_lsb2_q8);
     if (pipeline.has_sample) {
         filter_reset(&axis->filter, from_lsb);
     } else {
