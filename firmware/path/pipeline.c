@@ -110,7 +110,9 @@ void pipeline_retime(uint32_t period_us)
     bool still = true;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         uint16_t now_lsb_q2 = (uint16_t)(tilt_axis_estimate_q8(&pipeline.axes[axis]) >> 6);
-        still = (uint16_t)(now_lsb_q2 - pipeline.looked_lsb_q2[axis] + STILL_LSB_Q2) <= 2u * STILL_LSB_Q2 && still;
+        if ((uint16_t)(now_lsb_q2 - pipeline.looked_lsb_q2[axis] + STILL_LSB_Q2) > 2u * STILL_LSB_Q2) {
+            still = false;
+        }
         pipeline.looked_lsb_q2[axis] = now_lsb_q2;
     }
     uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
