@@ -31,9 +31,9 @@ static void start_sensor(void)
     adxl345_start(&config);
 }
 
-static void start_pipeline(void)
+static void change_pipeline(void)
 {
-    pipeline_start(&settings()->choice, settings()->rate_dhz, settings()->range_g);
+    pipeline_change(&settings()->choice, settings()->rate_dhz, settings()->range_g);
 }
 
 void control_start(uint32_t now_us)
@@ -43,7 +43,8 @@ void control_start(uint32_t now_us)
     control.sampling = true;
     pipeline_calibrate(&settings()->calibration);
     coast_wait(now_us);
-    start_pipeline();
+    pipeline_forget();
+    change_pipeline();
     start_sensor();
 }
 
@@ -155,9 +156,10 @@ bool control_follow(uint32_t now_us)
         coast_wait(now_us);
     }
     if (now & CHANGE_COLD) {
-        start_pipeline();
-    } else if (now & (CHANGE_FILTER | CHANGE_CONFIG)) {
-        pipeline_change(&settings()->choice, settings()->rate_dhz, settings()->range_g);
+        pipeline_forget();
+    }
+    if (now & (CHANGE_FILTER | CHANGE_CONFIG | CHANGE_COLD)) {
+        change_pipeline();
     }
     return now != 0;
 }

@@ -37,7 +37,7 @@ static struct measure {
     uint8_t skip;                /* samples still to skip */
     uint8_t began_s;
     bool asks;  /* for another configuration of the sensor, or for that of the settings */
-    bool takes; /* samples have the configuration that the step needs */
+    bool waits; /* until samples have it */
     bool borrows;
 } measure;
 
@@ -53,7 +53,7 @@ void measure_reset(void)
 {
     measure.step = STEP_IDLE;
     measure.asks = false;
-    measure.takes = false;
+    measure.waits = false;
     measure.borrows = false;
 }
 
@@ -71,14 +71,14 @@ void measure_configure(adxl345_config_t *config)
     }
 }
 
-static void enter(step_t step)
+static void enter(struct measure *m, step_t step)
 {
-    measure.step = (uint8_t)step;
-    measure.takes = step == STEP_COLLECT;
-    measure.skip = 0;
+    m->step = (uint8_t)step;
+    m->skip = 0;
     if (step != STEP_COLLECT) {
-        measure.skip = MEASURE_SETTLE;
-        measure.asks = true;
+        m->skip = MEASURE_SETTLE;
+        m->asks = true;
+        m->waits = true;
     }
 }
 
@@ -103,17 +103,17 @@ static void collect(step_t step)
         }
     }
     rest_start(&m->rest);
-    enter(step);
+    enter(m, step);
 }
 
 static void end(measure_outcome_t outcome)
 {
-    measure.outcome = (uint8_t)outcome;
-    measure.takes = false;
-    if (measure.step == STEP_COLLECT || measure.step == STEP_SOLVE) {
-        measure.step = STEP_TELL;
+    struct measure *m = here();
+    m->outcome = (uint8_t)outcome;
+    if (m->step <= STEP_COLLECT) {
+        m->step = STEP_TELL;
     } else {
-        enter(STEP_BACK);
+        enter(m, STEP_BACK);
     }
 }
 
@@ -122,7 +122,7 @@ bool measure_configured(void)
     struct measure *m = here();
     bool back = m->step == STEP_BACK;
     m->borrows = !back;
-    m->takes = !back;
+    m->waits = false;
     if (back) {
         m->step = STEP_TELL;
     }
@@ -163,14 +163,14 @@ static bool failed(void)
 
 void measure_stop(void)
 {
-    if (measure.kind == NOTICE_CAL6 && (measure.step == STEP_COLLECT || measure.step == STEP_SOLVE)) {
-        measure_reset();
+    if (measure.kind == NOTICE_CAL6 && measure.step >= STEP_SOLVE) {
+        measure.step = STEP_IDLE;
     }
 }
 
-static void solve(void)
+static void solve(struct measure *m)
 {
-    measure_outcome_t outcome = calibrate_step(&measure.six);
+    measure_outcome_t outcome = calibrate_step(&m->six);
     if (outcome != MEASURE_BEGUN) {
         end(outcome);
     }
@@ -181,7 +181,7 @@ void measure_pass(void)
 {
     struct measure *m = here();
     if (m->step == STEP_SOLVE) {
-        solve();
+        solve(m);
     }
     if (m->step >= STEP_COLLECT && failed()) {
         measure_abort();
@@ -205,9 +205,8 @@ static void board_moves(void)
 }
 
 /* A position that cannot be reported is taken again. */
-static void calibrate(void)
+static void calibrate(struct measure *m)
 {
-    struct measure *m = here();
     measure_outcome_t outcome = MEASURE_UNCHANGED;
     if (notices_room()) {
         outcome = calibrate_take(m->kind, m->result_lsb_q4);
@@ -220,7 +219,6 @@ static void calibrate(void)
     if (outcome == MEASURE_UNCHANGED) {
         collect(STEP_COLLECT);
     } else if (outcome == MEASURE_BEGUN) {
-        m->takes = false;
         m->step = STEP_SOLVE;
         calibrate_start_six(&m->six);
         hal_wake();
@@ -230,45 +228,45 @@ static void calibrate(void)
 }
 
 /* All samples have come, or one of them shows that the board moves. */
-static void collected(void)
+static void collected(struct measure *m)
 {
-    if (!rest_still(&measure.rest, measure.step == STEP_COLLECT ? settings()->rate_dhz : MEASURE_SELFTEST_DHZ)) {
+    if (!rest_still(&m->rest, m->step == STEP_COLLECT ? settings()->rate_dhz : MEASURE_SELFTEST_DHZ)) {
         board_moves();
         return;
     }
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        int16_t *result = &measure.result_lsb_q4[axis];
-        *result = (int16_t)((uint16_t)rest_mean_lsb_q4(&measure.rest.axes[axis]) - (uint16_t)*result);
+        int16_t *result = &m->result_lsb_q4[axis];
+        *result = (int16_t)((uint16_t)rest_mean_lsb_q4(&m->rest.axes[axis]) - (uint16_t)*result);
     }
-    if (measure.step == STEP_PLAIN) {
+    if (m->step == STEP_PLAIN) {
         collect(STEP_FORCED);
-    } else if (measure.kind >= NOTICE_TARE) {
-        calibrate();
+    } else if (m->kind >= NOTICE_TARE) {
+        calibrate(m);
     } else {
         end(MEASURE_DONE);
     }
 }
 
 /* At 200, 400 and 800 Hz only every second, fourth and eighth sample, so that they span as much time. */
-static void take(const int16_t lsb[3])
+static void take(struct measure *m, const int16_t lsb[3])
 {
-    struct measure *m = here();
     if (m->step == STEP_COLLECT) {
         m->skip = (uint8_t)(settings()->rate_dhz >> 10);
     }
     if (rest_add(&m->rest, lsb)) {
-        collected();
+        collected(m);
     }
 }
 
 bool measure_sample(const int16_t lsb[3])
 {
-    bool borrowed = measure.borrows;
-    if (measure.takes) {
-        if (measure.skip != 0) {
-            measure.skip--;
+    struct measure *m = here();
+    bool borrowed = m->borrows;
+    if (m->step >= STEP_COLLECT && !m->waits) {
+        if (m->skip != 0) {
+            m->skip--;
         } else {
-            take(lsb);
+            take(m, lsb);
         }
     }
     return borrowed;

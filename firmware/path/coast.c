@@ -78,7 +78,9 @@ bool coast_sample(uint32_t t_us, uint32_t period_us)
     }
     if (c->state == STATE_COASTING) { /* t_us is at most two periods before lost_us, or up to 71 minutes late */
         uint32_t periods = (t_us - c->lost_us + 2u * period_us) / period_us;
-        count_lost(periods > 1u ? periods - 1u : 0u);
+        if (periods > 1u) {
+            count_lost(periods - 1u);
+        }
     }
     c->state = STATE_RUNNING;
     expect(t_us + period_us, period_us);

@@ -18,13 +18,7 @@ enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_retime; 1 degree */
 /* What pipeline_work is to take through the filters: a sample, or the place of a missing one. */
 typedef enum { WORK_NONE, WORK_SAMPLE, WORK_COAST } work_t;
 
-static struct {
-    tilt_axis_t axes[AXES];
-    uint16_t looked_lsb_q2[AXES]; /* the estimates one second ago */
-    calibration_applied_t applied;
-#if SUPERVISOR
-    const calibration_t *calibration; /* the one in force */
-#endif
+static struct pipeline {
     const filter_choice_t *choice;
     adxl345_sample_t newest; /* or the time of the missing one, with the last readings */
     tilt_t tilt;
@@ -38,13 +32,27 @@ static struct {
     uint8_t work;     /* work_t */
     uint8_t to_begin; /* axes that are still to get a new filter, the last of them first */
     bool cold;        /* all of them before the next sample, with a new noise estimate; else one with each sample */
-    bool turn;        /* one with this sample */
+    bool turn;        /* one of them now */
     uint8_t new_kind; /* filter_kind_t */
     bool own_r;       /* R is the user's, not the estimated one */
     bool is_stuck;    /* the newest sample has ROW_STUCK */
     uint8_t stuck;    /* samples with ROW_STUCK in a row before this one, up to HUNG_SAMPLES */
     bool has_sample;
+    uint16_t looked_lsb_q2[AXES]; /* the estimates one second ago */
+#if SUPERVISOR
+    const calibration_t *calibration; /* the one in force */
+#endif
+    calibration_applied_t applied;
+    tilt_axis_t axes[AXES];
 } pipeline;
+
+/* With its address in a register, each access takes half the code, but not to what lies behind 64 bytes. */
+static inline struct pipeline *here(void)
+{
+    struct pipeline *p = &pipeline;
+    MACHINE_POINTER(p);
+    return p;
+}
 
 _Static_assert((int)TILT_GATED == (int)ROW_GATED && (int)TILT_COASTED == (int)ROW_COASTED &&
                    (int)TILT_REACQUIRED == (int)ROW_REACQUIRED && (int)TILT_CLIPPED == (int)ROW_CLIPPED &&
@@ -91,9 +99,10 @@ uint32_t pipeline_newest_us(void)
  */
 static void begin_all(bool cold)
 {
-    pipeline.cold = cold;
-    pipeline.turn = false;
-    pipeline.to_begin = AXES;
+    struct pipeline *p = here();
+    p->cold = cold;
+    p->turn = cold;
+    p->to_begin = AXES;
 }
 
 void pipeline_retime(uint32_t period_us)
@@ -101,7 +110,9 @@ void pipeline_retime(uint32_t period_us)
     bool still = true;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         uint16_t now_lsb_q2 = (uint16_t)(tilt_axis_estimate_q8(&pipeline.axes[axis]) >> 6);
-        still = (uint16_t)(now_lsb_q2 - pipeline.looked_lsb_q2[axis] + STILL_LSB_Q2) <= 2u * STILL_LSB_Q2 && still;
+        if ((uint16_t)(now_lsb_q2 - pipeline.looked_lsb_q2[axis] + STILL_LSB_Q2) > 2u * STILL_LSB_Q2) {
+            still = false;
+        }
         pipeline.looked_lsb_q2[axis] = now_lsb_q2;
     }
     uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
@@ -123,7 +134,10 @@ static MACHINE_APART void begin_axis(tilt_axis_t *axis)
     choice_begin(pipeline.choice, &axis->filter, (filter_kind_t)pipeline.new_kind, pipeline.true_dhz);
     uint32_t r_lsb2_q8 = choice_r_lsb2_q8(pipeline.choice);
     pipeline.own_r = r_lsb2_q8 != 0;
-    filter_set_noise(&axis->filter, r_lsb2_q8 != 0 ? r_lsb2_q8 : filter_noise_r_lsb2_q8(&axis->noise));
+    if (r_lsb2_q8 == 0) {
+        r_lsb2_q8 = filter_noise_r_lsb2_q8(&axis->noise);
+    }
+    filter_set_noise(&axis->filter, r_lsb2_q8);
     if (pipeline.has_sample) {
         filter_reset(&axis->filter, from_lsb);
     } else {
@@ -134,12 +148,12 @@ static MACHINE_APART void begin_axis(tilt_axis_t *axis)
 static bool begin_next(void)
 {
     uint8_t left = pipeline.to_begin;
-    if (left == 0 || !(pipeline.turn || pipeline.cold)) {
+    if (left == 0 || !pipeline.turn) {
         return false;
     }
     left--;
     pipeline.to_begin = left;
-    pipeline.turn = false;
+    pipeline.turn = pipeline.cold;
     tilt_axis_t *axis = &pipeline.axes[left];
     if (pipeline.cold) {
         filter_noise_init(&axis->noise, pipeline.rate_dhz, left == 2);
@@ -151,24 +165,24 @@ static bool begin_next(void)
 /* The filters continue from the old output, if there is one, and so do the noise estimates unless the rate is new. */
 void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g)
 {
-    bool cold = !pipeline.has_sample || rate_dhz != pipeline.rate_dhz;
+    struct pipeline *p = here();
+    bool cold = !p->has_sample || rate_dhz != p->rate_dhz;
     if (cold) {
-        pipeline.true_dhz = rate_dhz;
-        pipeline.calls_off = 0;
+        p->true_dhz = rate_dhz;
+        p->calls_off = 0;
     }
-    pipeline.choice = choice;
-    pipeline.new_kind = choice->filter;
-    pipeline.rate_dhz = rate_dhz;
-    pipeline.warm_rows = WARM_ROWS;
-    pipeline.rail_high_lsb = (int16_t)(range_g * 256U - 1U);
+    p->choice = choice;
+    p->new_kind = choice->filter;
+    p->rate_dhz = rate_dhz;
+    p->warm_rows = WARM_ROWS;
+    p->rail_high_lsb = (int16_t)(range_g * 256U - 1U);
     begin_all(cold);
 }
 
-void pipeline_start(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g)
+void pipeline_forget(void)
 {
     pipeline.has_sample = false;
     pipeline.stuck = 0;
-    pipeline_change(choice, rate_dhz, range_g);
 }
 
 static void count_sample(uint8_t flags)
@@ -199,12 +213,13 @@ void pipeline_calibrate(const calibration_t *calibration)
  */
 static bool hung(void)
 {
-    bool stuck = pipeline.is_stuck;
-    bool back = pipeline.stuck == HUNG_SAMPLES && !stuck;
+    struct pipeline *p = here();
+    bool stuck = p->is_stuck;
+    bool back = p->stuck == HUNG_SAMPLES && !stuck;
     if (!stuck) {
-        pipeline.stuck = 0;
-    } else if (pipeline.stuck != HUNG_SAMPLES) {
-        pipeline.stuck++;
+        p->stuck = 0;
+    } else if (p->stuck != HUNG_SAMPLES) {
+        p->stuck++;
     }
     return back;
 }
@@ -275,9 +290,10 @@ void pipeline_sample(const adxl345_sample_t *sample)
 
 void pipeline_flag(uint16_t flags)
 {
-    pipeline.flags |= flags;
+    struct pipeline *p = here();
+    p->flags |= flags;
     if (flags & ROW_STUCK) {
-        pipeline.is_stuck = true;
+        p->is_stuck = true;
     }
 }
 
@@ -302,18 +318,34 @@ static void find_angles(tilt_t *tilt, const int32_t lsb_q8[3], int32_t a_q8[3])
     tilt_angles(tilt, a_q8);
 }
 
+/* Adds what the acceleration of this row and the pipeline's state say. */
+static uint16_t with_state(uint16_t flags, const int32_t a_q8[3])
+{
+    if (!tilt_gravity_plausible(a_q8)) {
+        flags |= ROW_NOT_GRAVITY;
+    }
+    if (pipeline.tilt.roll_undefined) {
+        flags |= ROW_ROLL_UNDEFINED;
+    }
+    if (pipeline.warm_rows != 0) {
+        flags |= ROW_WARMING_UP;
+    }
+    return flags;
+}
+
 void pipeline_row(row_t *row)
 {
     int32_t estimates_q8[AXES];
     static int32_t a_q8[AXES]; /* cheaper to access than on the stack */
     int32_t *estimate = estimates_q8;
+    MACHINE_POINTER(row); /* with its address in a register, each access takes half the code */
     for (const tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
         *estimate++ = tilt_axis_estimate_q8(axis);
     }
-    row->flags = pipeline.flags;
+    uint16_t flags = pipeline.flags;
 #if SUPERVISOR
     if (supervisor_complete(pipeline.calibration, estimates_q8)) {
-        row->flags |= ROW_LEFT_OUT;
+        flags |= ROW_LEFT_OUT;
     }
 #endif
     find_angles(&pipeline.tilt, estimates_q8, a_q8);
@@ -324,16 +356,15 @@ void pipeline_row(row_t *row)
     }
     row->roll_cdeg = pipeline.tilt.roll_cdeg;
     row->pitch_cdeg = pipeline.tilt.pitch_cdeg;
-    row->flags |= tilt_gravity_plausible(a_q8) ? 0u : ROW_NOT_GRAVITY;
-    row->flags |= pipeline.tilt.roll_undefined ? ROW_ROLL_UNDEFINED : 0u;
-    row->flags |= pipeline.warm_rows != 0 ? ROW_WARMING_UP : 0u;
+    row->flags = with_state(flags, a_q8);
 }
 
 void pipeline_row_done(void)
 {
-    pipeline.flags = 0;
-    if (pipeline.warm_rows != 0) {
-        pipeline.warm_rows--;
+    struct pipeline *p = here();
+    p->flags = 0;
+    if (p->warm_rows != 0) {
+        p->warm_rows--;
     }
 }
 

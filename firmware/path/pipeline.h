@@ -53,16 +53,14 @@ void pipeline_reset(void);
 /* Sets the calibration that converts readings to accelerations; it must be legal (calibration.h) and stay in place. */
 void pipeline_calibrate(const calibration_t *calibration);
 
-/*
- * Restart: filters collect a robust start, noise estimates start at their floor. The choice must stay in place: it is
- * read whenever a filter starts.
- */
-void pipeline_start(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g);
+/* There is no old output to continue from. A change must follow. */
+void pipeline_forget(void);
 
 /*
- * Changes filter, rate or range while running: the new filters continue from the old output, one axis before each of
- * the next three samples, so that no row waits for all of them. With another rate all change at once, and the noise
- * estimates restart.
+ * Sets filter, rate and range: the new filters continue from the old output, one axis before each of the next three
+ * samples, so that no row waits for all of them. With another rate all change at once, and the noise estimates restart.
+ * Without an old output all change at once too: filters collect a robust start, noise estimates start at their floor.
+ * The choice must stay in place: it is read whenever a filter starts.
  */
 void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t range_g);
 
@@ -75,8 +73,8 @@ void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t r
 void pipeline_retime(uint32_t period_us);
 
 /*
- * One piece of the work that pipeline_start, _change, _retime, _coast or _sample has started: the filter of an axis
- * changed, up to 2.4 ms, or a sample; false: nothing was left to do. So the main loop can do other things in between.
+ * One piece of the work that pipeline_change, _retime, _coast or _sample has started: the filter of an axis changed,
+ * up to 2.4 ms, or a sample; false: nothing was left to do. So the main loop can do other things in between.
  * Start nothing else until it is done; only a change may replace a change.
  */
 bool pipeline_work(void);

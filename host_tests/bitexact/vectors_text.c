@@ -101,7 +101,8 @@ static void begin_rows(uint8_t mode, uint16_t index)
     coast_wait(now_us);
     pipeline_reset();
     pipeline_calibrate(&settings()->calibration);
-    pipeline_start(&settings()->choice, settings()->rate_dhz, settings()->range_g);
+    pipeline_forget();
+    pipeline_change(&settings()->choice, settings()->rate_dhz, settings()->range_g);
     pipeline_finish();
     rows_start();
     rows_enable(true);

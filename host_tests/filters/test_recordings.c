@@ -55,7 +55,8 @@ static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t
     calibration_plain(&settings()->calibration, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6); /* as row_mg */
     pipeline_calibrate(&settings()->calibration);
     settings_take_filter(kind);
-    pipeline_start(&settings()->choice, rate_dhz, range_g);
+    pipeline_forget();
+    pipeline_change(&settings()->choice, rate_dhz, range_g);
     pipeline_finish();
     for (int axis = 0; axis < 3; axis++) {
         TEST_ASSERT_TRUE(chain_begin(&chain[axis], (filter_kind_t)kind, rate_dhz, range_g, axis));

@@ -14,7 +14,8 @@ void setUp(void)
     settings_defaults();
     pipeline_calibrate(&settings()->calibration);
     settings_take_filter(0);
-    pipeline_start(&settings()->choice, 1000, 16);
+    pipeline_forget();
+    pipeline_change(&settings()->choice, 1000, 16);
     pipeline_finish();
     coast_wait(START_US);
 }

@@ -16,7 +16,8 @@ void setUp(void)
     pipeline_calibrate(&c);
     pipeline_reset();
     settings_take_filter(plain_kind());
-    pipeline_start(&settings()->choice, 1000, RANGE_G);
+    pipeline_forget();
+    pipeline_change(&settings()->choice, 1000, RANGE_G);
     pipeline_finish();
 }
 

@@ -38,7 +38,8 @@ static void begin_at(uint8_t kind, uint16_t rate_dhz)
     settings_defaults();
     pipeline_calibrate(&settings()->calibration);
     settings_take_filter(kind);
-    pipeline_start(&settings()->choice, rate_dhz, 16);
+    pipeline_forget();
+    pipeline_change(&settings()->choice, rate_dhz, 16);
     pipeline_finish();
 }
 

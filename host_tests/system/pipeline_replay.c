@@ -266,7 +266,8 @@ int main(int argc, char **argv)
     settings_defaults();
     pipeline_calibrate(&settings()->calibration);
     settings_take_filter((uint8_t)kind);
-    pipeline_start(&settings()->choice, rate_dhz, range_g);
+    pipeline_forget();
+    pipeline_change(&settings()->choice, rate_dhz, range_g);
     pipeline_finish();
     replay(argv[1], rate_dhz, (size_t)number("rows to skip", argv[5], 0, 1000000000));
     return 0;

@@ -38,7 +38,8 @@ static void begin_both(uint8_t kind, uint16_t rate_dhz)
     settings_defaults();
     pipeline_calibrate(&settings()->calibration);
     settings_take_filter(kind);
-    pipeline_start(&settings()->choice, rate_dhz, 16);
+    pipeline_forget();
+    pipeline_change(&settings()->choice, rate_dhz, 16);
     pipeline_finish();
     TEST_ASSERT_TRUE(tilt_filter_begin_with(&tilt, rate_dhz / 10U, filter_listed((filter_kind_t)kind)));
     first_rows = law_facts((filter_kind_t)kind).starts_with_median ? 0 : FILTER_WARM_UP_SAMPLES;

@@ -191,7 +191,8 @@ int64_t libtilt_replay(const libtilt_stream_t *in, int kind, uint16_t rate_dhz, 
     pipeline_reset();
     pipeline_calibrate(&settings()->calibration);
     settings_take_filter((uint8_t)kind);
-    pipeline_start(&settings()->choice, rate_dhz, range_g);
+    pipeline_forget();
+    pipeline_change(&settings()->choice, rate_dhz, range_g);
     pipeline_finish();
     run(&replay, &feed);
     free(stream.rows);

@@ -88,7 +88,10 @@ static void prepare_column(calibration_applied_t *applied, const calibration_t *
     int16_t share_q14 = quotient_q14(w_q14[ours], (uint16_t)w_q14[2]);
     bool reversed = (c->axes[ours] < 0) != (c->level_q14[2] < 0 && ours != 0U);
     for (uint8_t i = 0; i < 3U; i++) {
-        int32_t m_q14 = ((w_q14[i] * share_q14 + 8192) >> 14) - (i == ours ? CALIBRATION_ONE_Q14 : 0);
+        int32_t m_q14 = (w_q14[i] * share_q14 + 8192) >> 14;
+        if (i == ours) {
+            m_q14 -= CALIBRATION_ONE_Q14;
+        }
         m_q14 = (reversed == (i == 2U)) ? -m_q14 : m_q14;
         applied->matrix_q14[3U * i + theirs] = quotient_q14(m_q14, c->scale_lsb_per_g_uq6[theirs]);
     }

@@ -18,17 +18,6 @@ calibration_verdict_t calibration_commit(calibration_t *c, const calibration_t *
     return verdict;
 }
 
-MACHINE_APART calibration_verdict_t calibration_tare(calibration_t *c, const int16_t mean_lsb_q4[3])
-{
-    calibration_t found = *c;
-    for (uint8_t ours = 0; ours < 3U; ours++) {
-        uint8_t theirs = calibration_named(c->axes[ours]);
-        int16_t g_q14 = calibration_gravity_q14(c, theirs, mean_lsb_q4[theirs]);
-        found.level_q14[ours] = (int16_t)(c->axes[ours] < 0 ? -g_q14 : g_q14);
-    }
-    return calibration_commit(c, &found);
-}
-
 uint8_t calibration_position(const int16_t mean_lsb_q4[3])
 {
     uint8_t position = 0;
@@ -44,16 +33,45 @@ uint8_t calibration_position(const int16_t mean_lsb_q4[3])
     return position;
 }
 
-MACHINE_APART calibration_verdict_t calibration_single(calibration_t *c, const int16_t mean_lsb_q4[3])
+/* Changes a legal calibration by the means of a rest. */
+typedef void change_t(calibration_t *c, const int16_t mean_lsb_q4[3]);
+
+static void level(calibration_t *c, const int16_t mean_lsb_q4[3])
+{
+    for (uint8_t ours = 0; ours < 3U; ours++) {
+        uint8_t theirs = calibration_named(c->axes[ours]);
+        int16_t g_q14 = calibration_gravity_q14(c, theirs, mean_lsb_q4[theirs]);
+        c->level_q14[ours] = (int16_t)(c->axes[ours] < 0 ? -g_q14 : g_q14);
+    }
+}
+
+static void offsets(calibration_t *c, const int16_t mean_lsb_q4[3])
+{
+    uint8_t position = calibration_position(mean_lsb_q4);
+    for (uint8_t i = 0; i < 3U; i++) {
+        int16_t offset_q4 = mean_lsb_q4[i];
+        if (i == position >> 1) {
+            int16_t one_g_q4 = (int16_t)((c->scale_lsb_per_g_uq6[i] + 2U) >> 2);
+            offset_q4 = (int16_t)((position & 1U) != 0U ? offset_q4 + one_g_q4 : offset_q4 - one_g_q4);
+        }
+        c->offset_lsb_q4[i] = offset_q4;
+    }
+}
+
+/* *c is changed if the result is legal. */
+static calibration_verdict_t change(calibration_t *c, const int16_t mean_lsb_q4[3], change_t *by)
 {
     calibration_t found = *c;
-    uint8_t position = calibration_position(mean_lsb_q4);
-    uint8_t axis = position >> 1;
-    for (uint8_t i = 0; i < 3U; i++) {
-        found.offset_lsb_q4[i] = mean_lsb_q4[i];
-    }
-    int16_t one_g_q4 = (int16_t)((found.scale_lsb_per_g_uq6[axis] + 2U) >> 2);
-    found.offset_lsb_q4[axis] = (int16_t)(found.offset_lsb_q4[axis] +
-                                          ((position & 1U) != 0U ? one_g_q4 : (int16_t)-one_g_q4));
+    by(&found, mean_lsb_q4);
     return calibration_commit(c, &found);
+}
+
+calibration_verdict_t calibration_tare(calibration_t *c, const int16_t mean_lsb_q4[3])
+{
+    return change(c, mean_lsb_q4, level);
+}
+
+calibration_verdict_t calibration_single(calibration_t *c, const int16_t mean_lsb_q4[3])
+{
+    return change(c, mean_lsb_q4, offsets);
 }

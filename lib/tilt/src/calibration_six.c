@@ -14,6 +14,7 @@
 #define ACROSS_MAX_Q28 (ONE_Q28 / 4U) /* sin(30 degrees)^2: at 20 degrees off it stays below this in every round */
 
 enum { ROUNDS = 6, RESIDUAL_MAX_Q14 = 160 };
+enum { HALF_MG_OF_Q14_UQ16 = 8000 }; /* 1000 / 2^14 mg, in halves */
 
 /*
  * Two readings of an axis, Q4, are 6,014 to 10,560 apart for legal scales and 20 degrees. Others cannot become legal,
@@ -46,8 +47,8 @@ static bool draw_line(calibration_t *c, means_t means, uint8_t axis, const uint1
     }
     uint16_t scale_uq6 = (uint16_t)calibration_over(apart_q4, (uint16_t)(component_q14[0] + component_q14[1]));
     c->scale_lsb_per_g_uq6[axis] = scale_uq6;
-    uint16_t rise_q5 = filter_fx_high_u16((uint16_t)(scale_uq6 << 1), component_q14[0]); /* scale < 2^15 */
-    c->offset_lsb_q4[axis] = (int16_t)((uint16_t)upper_q4 - ((rise_q5 + 1U) >> 1));
+    uint16_t rise_q4 = filter_fx_mul16_uq16(scale_uq6, component_q14[0]);
+    c->offset_lsb_q4[axis] = (int16_t)((uint16_t)upper_q4 - rise_q4);
     return true;
 }
 
@@ -100,7 +101,7 @@ calibration_verdict_t calibration_six_end(const calibration_six_t *six, calibrat
     if (six->verdict.why != (uint8_t)CALIBRATION_GOOD) {
         return six->verdict;
     }
-    *residual_mg = (uint16_t)(((uint32_t)six->off_q14 * 125U + 1024U) >> 11);
+    *residual_mg = (uint16_t)((filter_fx_high_u16(six->off_q14, HALF_MG_OF_Q14_UQ16) + 1U) >> 1);
     if (six->off_q14 > RESIDUAL_MAX_Q14) {
         return calibration_verdict(CALIBRATION_RESIDUAL, six->where);
     }

@@ -177,7 +177,8 @@ void tilt_angles(tilt_t *out, const int32_t a_q8[3])
         out->roll_cdeg = signed_cdeg(slope_cdeg(&slope), y_q8 < 0, z_q8 < 0);
     }
     slope_of(&slope, x, yz);
-    out->pitch_cdeg = signed_cdeg(slope_cdeg(&slope), x_q8 > 0, false);
+    int16_t pitch_cdeg = (int16_t)slope_cdeg(&slope);
+    out->pitch_cdeg = (int16_t)(x_q8 < 0 ? pitch_cdeg : -pitch_cdeg);
 }
 
 uint16_t tilt_isqrt32(uint32_t v)

@@ -28,7 +28,10 @@ _Static_assert((int)TILT_GATED == (int)FILTER_GATED && (int)TILT_REACQUIRED == (
 static uint8_t flags_of(const filter_t *f)
 {
     uint8_t flags = f->flags & (FILTER_GATED | FILTER_REACQUIRED);
-    return (uint8_t)(((f->flags & FILTER_WARMING_UP) != 0U) ? flags | TILT_WARMING_UP : flags);
+    if ((f->flags & FILTER_WARMING_UP) != 0U) {
+        flags |= TILT_WARMING_UP;
+    }
+    return flags;
 }
 
 /* R is estimated once: with a law that identifies its own, the estimator does not run. */
