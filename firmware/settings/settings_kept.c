@@ -49,15 +49,6 @@ static void find_filter(void)
     settings_follow();
 }
 
-/* For settings that another version saved. */
-static void keep_calibration(void)
-{
-    calibration_t saved = settings()->calibration;
-    settings_defaults();
-    settings()->calibration = saved;
-    kept = KEPT_CALIBRATION;
-}
-
 void settings_load(void)
 {
     kept = (uint8_t)store_load((uint8_t *)settings());
@@ -67,7 +58,8 @@ void settings_load(void)
     if (kept < KEPT_GOOD) {
         settings_defaults();
     } else if (settings()->version != SETTINGS_VERSION) {
-        keep_calibration();
+        settings_defaults_beside_calibration();
+        kept = KEPT_CALIBRATION;
     } else {
         find_filter();
     }
