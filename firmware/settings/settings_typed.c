@@ -99,24 +99,28 @@ static bool take_numbers(const setting_t *s, const char *text)
     return *text == '\0';
 }
 
-/* Each of x, y, z once, with a sign if reversed. A mirror image is refused: a board cannot be mounted that way. */
+/*
+ * x, y, z in any order, with a sign if reversed; calibration_check refuses one that comes twice. A mirror image is
+ * refused: a board cannot be mounted that way.
+ */
 static bool take_axes(const char *text)
 {
-    enum { XYZ = 0x123, YZX = 0x231, ZXY = 0x312 };
-    uint16_t order = 0;
+    int8_t axis = 0;
+    int8_t previous = 0;
     bool mirrored = true;
     for (uint8_t i = 0; i < AXES; i++) {
         bool reversed = *text == '-';
         text += reversed;
-        int8_t axis = (int8_t)(*text++ - ('x' - 1));
+        previous = axis;
+        axis = (int8_t)(*text++ - ('x' - 1));
         if (axis < 1 || axis > AXES) {
             return false;
         }
-        order = (uint16_t)(order << 4 | (uint8_t)axis);
         mirrored ^= reversed;
         settings()->calibration.axes[i] = (int8_t)(reversed ? -axis : axis);
     }
-    bool turned = order == XYZ || order == YZX || order == ZXY;
+    int8_t step = (int8_t)(axis - previous);
+    bool turned = step == 1 || step == 1 - AXES; /* y after x, z after y, x after z */
     return turned == mirrored && *text == '\0';
 }
 
