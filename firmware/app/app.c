@@ -16,6 +16,7 @@
 #include "base/notices.h"
 #include "base/pass.h"
 #include "console/commands.h"
+#include "console/reply_lines.h"
 #include "console/speaker.h"
 #include "control/control.h"
 #include "control/measure.h"
@@ -61,7 +62,7 @@ static void forget(void)
 {
     counters_start();
     notices_start();
-    speaker_start();
+    reply_start();
     commands_start();
     rows_start();
     measure_reset();

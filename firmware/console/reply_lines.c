@@ -22,7 +22,7 @@ _Static_assert(TEXT_NO_GRAVITY - TEXT_TILTED == CALIBRATION_NO_GRAVITY - CALIBRA
 /* Nested texts: FAULT_BEGIN in the banner, the fault's words in that, CHECK_BUS at the end of those. */
 enum { TEXTS_DEPTH = 3 };
 
-static const uint8_t *at; /* where the reply continues */
+static const uint8_t *at; /* where the reply continues; NULL: none has begun */
 static said_t said;
 static uint8_t again; /* how often the line still repeats */
 
@@ -164,21 +164,34 @@ static bool write_line(void)
     }
 }
 
-reply_progress_t reply_line(uint8_t kind, uint8_t argument, bool first)
+void reply_start(void)
 {
+    at = 0;
+}
+
+bool reply_ended(void)
+{
+    return at == 0;
+}
+
+bool reply_line(uint8_t kind, uint8_t argument)
+{
+    bool first = reply_ended();
     if (first) {
         said.subject = argument;
         again = 0;
         uint8_t text = text_of(kind);
         if (text == TEXT_NONE) {
-            return REPLY_WAITS;
+            return false;
         }
         at = reply_text(text);
     }
     if (!begin_line(first && kind == NOTICE_BANNER)) {
-        return REPLY_WAITS;
+        return false;
     }
-    bool more = write_line();
+    if (!write_line()) {
+        at = 0;
+    }
     text_close();
-    return more ? REPLY_GOES_ON : REPLY_ENDED;
+    return true;
 }
