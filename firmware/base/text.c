@@ -11,7 +11,7 @@ bool text_open(uint8_t length)
 
 void text_close(void)
 {
-    hal_uart_tx_stage('\n');
+    text_char('\n');
     hal_uart_tx_commit();
 }
 
