@@ -54,8 +54,13 @@ static uint8_t measured_text(uint8_t kind)
         said.subject = outcome == MEASURE_BEGUN ? kind : calibrate_report()->position;
         return (uint8_t)(TEXT_HOLD_STILL - MEASURE_BEGUN + outcome);
     }
-    said.subject = kind < NOTICE_TARE ? 0 : kind == NOTICE_TARE ? SETTING_LEVEL : SETTING_OFFSET;
-    again = kind < NOTICE_TARE ? 2 : kind == NOTICE_CAL6;
+    if (kind < NOTICE_TARE) {
+        said.subject = 0;
+        again = 2;
+    } else {
+        said.subject = kind == NOTICE_TARE ? SETTING_LEVEL : SETTING_OFFSET;
+        again = kind == NOTICE_CAL6;
+    }
     return (uint8_t)(TEXT_BANNER + kind);
 }
 
@@ -140,8 +145,8 @@ static uint8_t next_code(unpacking_t *u)
     return code;
 }
 
-/* Writes the rest of the line; false: it was the last. */
-static bool write_line(void)
+/* Writes the rest of the line; returns where the next one begins, NULL after the last. */
+static const uint8_t *write_line(void)
 {
     unpacking_t u;
     u.from = at;
@@ -153,11 +158,10 @@ static bool write_line(void)
             if (again != 0) {
                 again--;
                 said.subject++;
-                return true;
+                return at;
             }
         } else if (code == 0 || code >= SAY_LINE) {
-            at = u.from;
-            return goes_on(code);
+            return goes_on(code) ? u.from : 0;
         } else {
             open_text(&u, say(&said, code));
         }
@@ -189,9 +193,7 @@ bool reply_line(uint8_t kind, uint8_t argument)
     if (!begin_line(first && kind == NOTICE_BANNER)) {
         return false;
     }
-    if (!write_line()) {
-        at = 0;
-    }
+    at = write_line();
     text_close();
     return true;
 }
