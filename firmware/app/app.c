@@ -15,6 +15,7 @@
 #include "base/health.h"
 #include "base/notices.h"
 #include "base/pass.h"
+#include "base/text.h"
 #include "console/commands.h"
 #include "console/reply_lines.h"
 #include "console/speaker.h"
@@ -102,6 +103,7 @@ void app_start(void)
     health_start();
     start_settings();
     open_line();
+    text_char('\n'); /* goes out with the banner: ends a line that the reset has cut */
     health_pause_filtering(HEALTH_HOLD_PASSES);
     hal_drdy_enable(); /* last, so that no edge waits for the settings */
     hal_irq_enable();

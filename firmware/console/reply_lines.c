@@ -92,15 +92,15 @@ static uint8_t text_of(uint8_t kind)
     return (uint8_t)(TEXT_BANNER + kind);
 }
 
-/* Starts a line, or waits. The very first one ends a line that a reset has cut. */
-static bool begin_line(bool very_first)
+/* Starts a line, or waits. */
+static bool begin_line(void)
 {
     uint8_t code = flash_u8(at);
     if (code == SAY_SENSOR && adxl345_fault() == ADXL345_FAULT_NONE && adxl345_phase() != ADXL345_STREAMING) {
         return false;
     }
     if (code != SAY_HEADER) {
-        text_words(FLASH_TEXT("\n# ") + !very_first);
+        text_words(FLASH_TEXT("# "));
     }
     return true;
 }
@@ -180,8 +180,7 @@ bool reply_ended(void)
 
 bool reply_line(uint8_t kind, uint8_t argument)
 {
-    bool first = reply_ended();
-    if (first) {
+    if (reply_ended()) {
         said.subject = argument;
         again = 0;
         uint8_t text = text_of(kind);
@@ -190,7 +189,7 @@ bool reply_line(uint8_t kind, uint8_t argument)
         }
         at = reply_text(text);
     }
-    if (!begin_line(first && kind == NOTICE_BANNER)) {
+    if (!begin_line()) {
         return false;
     }
     at = write_line();
