@@ -138,6 +138,6 @@ uint8_t setting_named(const char *name)
 
 uint32_t setting_choice(const setting_t *s, uint8_t i)
 {
-    uint16_t value = flash_u16(&choices[s->least + i]);
+    uint16_t value = flash_u16(&choices[(uint8_t)(s->least + i)]);
     return s->which == SETTING_BAUD ? (uint32_t)value * BAUD_UNIT : value;
 }

@@ -258,7 +258,7 @@ void setting_write_legal(uint8_t which)
     } else if (s.format.kind > LIST) {
         write_range(&s);
     } else {
-        for (uint8_t i = 0; i < s.most; i++) {
+        for (uint8_t i = 0; i < (uint8_t)s.most; i++) {
             if (i != 0) {
                 text_char(' ');
             }
