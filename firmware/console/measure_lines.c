@@ -23,11 +23,16 @@ static int16_t shift_q4(uint8_t axis)
 uint8_t measure_verdict(uint8_t axis)
 {
     int16_t shift = shift_q4(axis);
-    bool z = axis == 2;
-    if (shift < (z ? LEAST_Z_Q4 : LEAST_XY_Q4)) {
+    int16_t least = LEAST_XY_Q4;
+    int16_t greatest = GREATEST_XY_Q4;
+    if (axis == 2) {
+        least = LEAST_Z_Q4;
+        greatest = GREATEST_Z_Q4;
+    }
+    if (shift < least) {
         return VERDICT_FAIL;
     }
-    return shift > (z ? GREATEST_Z_Q4 : GREATEST_XY_Q4) ? VERDICT_HIGH : VERDICT_PASS;
+    return shift > greatest ? VERDICT_HIGH : VERDICT_PASS;
 }
 
 /*
