@@ -74,10 +74,11 @@ static const filter_law_t *law_in_force(void)
 static void look_at_row(setting_t *s, uint8_t which)
 {
     const row_t *row = &rows[which];
+    MACHINE_POINTER(row);
     const uint8_t *from = (const uint8_t *)row;
     uint8_t *to = (uint8_t *)&s->format;
-    for (uint8_t i = 0; i < sizeof s->format; i++) {
-        to[i] = flash_u8(from + i);
+    for (uint8_t left = sizeof s->format; left != 0; left--) {
+        *to++ = flash_u8(from++);
     }
     s->least = (int16_t)flash_u16((const uint16_t *)&row->least);
     s->most = (int16_t)flash_u16((const uint16_t *)&row->most);
