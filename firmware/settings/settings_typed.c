@@ -136,23 +136,13 @@ static bool take(const setting_t *s, const char *text)
     }
 }
 
-/* Whether the filter accepts the user's parameters including this one. */
-static setting_answer_t judge_parameter(uint8_t which)
-{
-    uint8_t own = settings()->choice.own;
-    settings()->choice.own = (uint8_t)(own | 1u << which);
-    if (choice_legal(&settings()->choice, settings()->rate_dhz)) {
-        return SETTING_TAKEN;
-    }
-    settings()->choice.own = own;
-    return SETTING_ILLEGAL;
-}
-
-/* Judges all settings including the new one. */
+/* Judges all settings including the new one; one of the filter's parameters becomes the user's own. */
 static setting_answer_t judge(const setting_t *s)
 {
     if (s->which >= SETTING_PARAMETERS) {
-        return judge_parameter((uint8_t)(s->which - SETTING_PARAMETERS));
+        filter_choice_t *choice = &settings()->choice;
+        choice->own = (uint8_t)(choice->own | 1u << (s->which - SETTING_PARAMETERS));
+        return choice_legal(choice, settings()->rate_dhz) ? SETTING_TAKEN : SETTING_ILLEGAL;
     }
     if (!settings_fit(settings()->choice.filter, settings()->rate_dhz)) {
         return SETTING_TOO_SLOW;
@@ -160,35 +150,40 @@ static setting_answer_t judge(const setting_t *s)
     return calibration_check(&settings()->calibration).why == CALIBRATION_GOOD ? SETTING_TAKEN : SETTING_ILLEGAL;
 }
 
-/* Copies bytes to where they are kept; true: they differ from the previous ones. */
-static bool keep(uint8_t *to, const uint8_t *from, uint8_t bytes)
+/* Bytes of the largest setting; those after a smaller one stay as they are. */
+enum { PLACE_BYTES = AXES * sizeof(int16_t) };
+
+/* Copies a setting's bytes to where they are kept; true: they differ from the previous ones. */
+static bool keep(uint8_t *to, const uint8_t *from)
 {
     bool differ = false;
-    for (; bytes != 0; bytes--, to++, from++) {
-        differ = differ || *to != *from;
-        *to = *from;
+    for (uint8_t left = PLACE_BYTES; left != 0; left--, to++, from++) {
+        if (*to != *from) {
+            *to = *from;
+            differ = true;
+        }
     }
     return differ;
 }
 
 setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
 {
-    static uint8_t before[AXES * sizeof(int16_t)];
+    static uint8_t before[PLACE_BYTES];
     setting_t s;
     setting_look(&s, which);
     uint8_t *place = place_of(&s, 0);
-    uint8_t bytes = s.format.size;
-    if (s.format.kind >= VECTOR) {
-        bytes = (uint8_t)((uint16_t)bytes * AXES);
-    }
     uint8_t own = settings()->choice.own;
-    (void)keep(before, place, bytes);
+    (void)keep(before, place);
     setting_answer_t answer = take(&s, text) ? judge(&s) : SETTING_ILLEGAL;
-    bool changed = answer == SETTING_TAKEN ? keep(before, place, bytes) : keep(place, before, bytes);
-    changed = changed || own != settings()->choice.own; /* the value is as before, but was not in force */
-    *starts = changed ? s.format.starts : 0;
-    if (which == SETTING_FILTER && *starts != 0) {
-        settings_take_filter(settings()->choice.filter);
+    *starts = 0;
+    if (answer != SETTING_TAKEN) {
+        (void)keep(place, before);
+        settings()->choice.own = own;
+    } else if (keep(before, place) || own != settings()->choice.own) { /* own: the value may be as before */
+        *starts = s.format.starts;
+        if (which == SETTING_FILTER) {
+            settings_take_filter(settings()->choice.filter);
+        }
     }
     return answer;
 }
