@@ -39,10 +39,11 @@ static uint32_t value_of(const setting_t *s, uint8_t number)
 static void put(const setting_t *s, uint8_t number, uint32_t value)
 {
     uint8_t *at = place_of(s, number);
-    for (uint8_t left = s->format.size; left != 0; left--) {
+    uint8_t left = s->format.size;
+    do {
         *at++ = (uint8_t)value;
         value >>= 8;
-    }
+    } while (--left != 0);
 }
 
 static flash_text_t word(const setting_t *s, uint8_t i)
@@ -59,7 +60,7 @@ static bool take_word(const setting_t *s, const char *text)
         }
         i--;
     } while (!text_equal(text, word(s, i)));
-    put(s, 0, setting_choice(s, i));
+    *place_of(s, 0) = (uint8_t)setting_choice(s, i); /* what has words takes one byte */
     return true;
 }
 
@@ -83,7 +84,7 @@ static bool to_tenths(uint32_t *value)
 {
     uint32_t tenths_q5 = *value * 5u;
     *value = tenths_q5 >> 5;
-    return (tenths_q5 & 31u) == 0;
+    return ((uint8_t)tenths_q5 & 31u) == 0;
 }
 
 static bool take_numbers(const setting_t *s, const char *text)
