@@ -75,7 +75,7 @@ flash_text_t text_nth(flash_text_t texts, uint8_t after)
 bool text_equal(const char *ram, flash_text_t words)
 {
     char c = flash_char(words);
-    while (c != '\0' && (*ram == c || *ram == c + ('a' - 'A'))) {
+    while (c != '\0' && (*ram == c || *ram == (char)(c + ('a' - 'A')))) {
         ram++;
         words++;
         c = flash_char(words);
