@@ -28,18 +28,13 @@ void text_words(flash_text_t words)
     }
 }
 
-void text_ram(const char *words)
-{
-    while (*words != '\0') {
-        text_char(*words++);
-    }
-}
-
 void text_u32(uint32_t value)
 {
-    char digits[FORMAT_U32_MAX + 1];
-    *format_u32(digits, value) = '\0';
-    text_ram(digits);
+    char digits[FORMAT_U32_MAX];
+    const char *end = format_u32(digits, value);
+    for (const char *at = digits; at != end; at++) {
+        text_char(*at);
+    }
 }
 
 void text_hex8(uint8_t value)
