@@ -15,7 +15,9 @@
 #include "base/health.h"
 #include "base/notices.h"
 #include "base/pass.h"
+#include "base/text.h"
 #include "console/commands.h"
+#include "console/reply_lines.h"
 #include "console/speaker.h"
 #include "control/control.h"
 #include "control/measure.h"
@@ -61,7 +63,7 @@ static void forget(void)
 {
     counters_start();
     notices_start();
-    speaker_start();
+    reply_start();
     commands_start();
     rows_start();
     measure_reset();
@@ -101,6 +103,7 @@ void app_start(void)
     health_start();
     start_settings();
     open_line();
+    text_char('\n'); /* goes out with the banner: ends a line that the reset has cut */
     health_pause_filtering(HEALTH_HOLD_PASSES);
     hal_drdy_enable(); /* last, so that no edge waits for the settings */
     hal_irq_enable();

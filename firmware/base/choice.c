@@ -18,9 +18,10 @@ static bool configure(const filter_choice_t *choice, filter_config_t *config, fi
     uint8_t own = (uint8_t)kind == choice->filter ? choice->own : 0;
     for (bool legal = true;; legal = false) {
         filter_set_defaults(config, law, rate_dhz);
-        for (uint8_t which = 0; own != 0; which++, own >>= 1) {
+        const uint32_t *from = choice->parameters;
+        for (int32_t *to = config->value; own != 0; to++, from++, own >>= 1) {
             if (own & 1u) {
-                config->value[which] = (int32_t)choice->parameters[which];
+                *to = (int32_t)*from;
             }
         }
         if (!legal || filter_judge(law, config) == FILTER_ACCEPTED) {

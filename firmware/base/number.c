@@ -12,7 +12,7 @@ static MACHINE_APART uint32_t down(uint32_t value, uint8_t bits)
 
 /* A number as far as it has been read. */
 typedef struct {
-    uint32_t limit;   /* of the digits, so that they can be shifted */
+    uint32_t limit;   /* of the digits before another one is added, so that they can be shifted */
     uint32_t digits;  /* including those after the point */
     uint16_t divisor; /* 10 to the number of decimals once the point has been read; else 0 */
     bool whole;       /* may end here: after a digit */
@@ -26,7 +26,7 @@ static bool take(reading_t *n, char c, bool point)
         n->whole = false;
         return true;
     }
-    if (c < '0' || c > '9' || n->divisor >= 10000u || n->digits > n->limit / 10u) {
+    if (c < '0' || c > '9' || n->divisor >= 10000u || n->digits > n->limit) {
         return false;
     }
     n->digits = n->digits * 10u + (uint8_t)(c - '0');
@@ -39,19 +39,21 @@ bool number_parse(const char **text, uint8_t fraction_bits, uint32_t *value)
 {
     const char *at = *text;
     bool negative = *at == '-';
-    at += negative;
-    reading_t n = { down(UINT32_MAX >> 1, fraction_bits), 0, 0, false };
+    if (negative) {
+        at++;
+    }
+    reading_t n = { down((UINT32_MAX >> 1) / 10u, fraction_bits), 0, 0, false };
     while (take(&n, *at, fraction_bits != 0)) {
         at++;
     }
-    if (!n.whole || n.digits > n.limit || (*at != ' ' && *at != '\0')) {
+    uint32_t result = n.digits << fraction_bits;
+    if (!n.whole || (result & 0x80000000u) != 0 || (*at != ' ' && *at != '\0')) {
         return false;
     }
     while (*at == ' ') {
         at++;
     }
     *text = at;
-    uint32_t result = n.digits << fraction_bits;
     if (n.divisor != 0) {
         result = (result + n.divisor / 2u) / n.divisor;
     }

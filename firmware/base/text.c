@@ -11,7 +11,7 @@ bool text_open(uint8_t length)
 
 void text_close(void)
 {
-    hal_uart_tx_stage('\n');
+    text_char('\n');
     hal_uart_tx_commit();
 }
 
@@ -28,18 +28,13 @@ void text_words(flash_text_t words)
     }
 }
 
-void text_ram(const char *words)
-{
-    while (*words != '\0') {
-        text_char(*words++);
-    }
-}
-
 void text_u32(uint32_t value)
 {
-    char digits[FORMAT_U32_MAX + 1];
-    *format_u32(digits, value) = '\0';
-    text_ram(digits);
+    char digits[FORMAT_U32_MAX];
+    const char *end = format_u32(digits, value);
+    for (const char *at = digits; at != end; at++) {
+        text_char(*at);
+    }
 }
 
 void text_hex8(uint8_t value)
@@ -75,7 +70,7 @@ flash_text_t text_nth(flash_text_t texts, uint8_t after)
 bool text_equal(const char *ram, flash_text_t words)
 {
     char c = flash_char(words);
-    while (c != '\0' && (*ram == c || *ram == c + ('a' - 'A'))) {
+    while (c != '\0' && (*ram == c || *ram == (char)(c + ('a' - 'A')))) {
         ram++;
         words++;
         c = flash_char(words);

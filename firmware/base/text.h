@@ -21,7 +21,6 @@ void text_close(void);
 
 void text_char(char c);
 void text_words(flash_text_t words);
-void text_ram(const char *words);
 void text_u32(uint32_t value);
 void text_hex8(uint8_t value);
 

@@ -42,7 +42,7 @@ static void answer(uint8_t kind, uint8_t argument)
 static void run_setting(uint8_t which, const char *value)
 {
     setting_answer_t taken = SETTING_TAKEN;
-    if (value != 0) {
+    if (*value != '\0') {
         taken = control_set(which, value);
         if (taken == SETTING_TAKEN) {
             which |= NOTICE_CHANGED;
@@ -64,22 +64,16 @@ static uint8_t command_named(const char *name)
     return kind;
 }
 
-/* The text after the first blanks, NULL if there is none; terminates the name before it (a blank becomes the end). */
+/* The text after the first blanks, "" if there is none; terminates the name before it (the blanks become its end). */
 static char *split_value(void)
 {
     char *at = line;
     while (*at != '\0' && *at != ' ') {
         at++;
     }
-    char *blank = at;
     while (*at == ' ') {
-        at++;
+        *at++ = '\0';
     }
-    if (*at == '\0') {
-        *blank = '\0';
-        return 0;
-    }
-    *blank = '\0';
     return at;
 }
 
@@ -111,11 +105,11 @@ static uint8_t run_verb(uint8_t verb)
 
 static void run_command(uint8_t kind, const char *value)
 {
-    if (kind == NOTICE_CAL6 && value != 0 && text_equal(value, FLASH_TEXT("stop"))) {
+    if (kind == NOTICE_CAL6 && text_equal(value, FLASH_TEXT("stop"))) {
         measure_stop();
         answer(NOTICE_CAL6, MEASURE_STOPPED);
     } else {
-        answer(kind == NOTICE_BANNER || value != 0 ? NOTICE_UNKNOWN : run_verb(kind), MEASURE_BEGUN);
+        answer(kind == NOTICE_BANNER || *value != '\0' ? NOTICE_UNKNOWN : run_verb(kind), MEASURE_BEGUN);
     }
 }
 

@@ -12,8 +12,8 @@
  */
 enum { LEAST_XY_Q4 = 1416, GREATEST_XY_Q4 = 15293, LEAST_Z_Q4 = 1764, GREATEST_Z_Q4 = 20580 };
 
-/* The shift in the direction in which the force should act: against y. */
-static int16_t shift_q4(uint8_t axis)
+/* Against y the force acts the other way. */
+int16_t measure_shift_q4(uint8_t axis)
 {
     int16_t lsb_q4 = measure_result_lsb_q4(axis);
     return axis == 1 ? (int16_t)-lsb_q4 : lsb_q4;
@@ -22,12 +22,17 @@ static int16_t shift_q4(uint8_t axis)
 /* Too large a shift is "not necessarily a failure" (p. 22). */
 uint8_t measure_verdict(uint8_t axis)
 {
-    int16_t shift = shift_q4(axis);
-    bool z = axis == 2;
-    if (shift < (z ? LEAST_Z_Q4 : LEAST_XY_Q4)) {
+    int16_t shift = measure_shift_q4(axis);
+    int16_t least = LEAST_XY_Q4;
+    int16_t greatest = GREATEST_XY_Q4;
+    if (axis == 2) {
+        least = LEAST_Z_Q4;
+        greatest = GREATEST_Z_Q4;
+    }
+    if (shift < least) {
         return VERDICT_FAIL;
     }
-    return shift > (z ? GREATEST_Z_Q4 : GREATEST_XY_Q4) ? VERDICT_HIGH : VERDICT_PASS;
+    return shift > greatest ? VERDICT_HIGH : VERDICT_PASS;
 }
 
 /*
@@ -36,9 +41,6 @@ uint8_t measure_verdict(uint8_t axis)
  */
 int32_t measure_number_q8(uint8_t what, uint8_t axis)
 {
-    if (what == SAY_SHIFT) {
-        return shift_q4(axis) * INT32_C(16);
-    }
     if (what == SAY_OFF) {
         return (int32_t)(adxl345_rate_chz() * 2560u / settings()->rate_dhz) - 25600;
     }

@@ -22,7 +22,7 @@ _Static_assert(TEXT_NO_GRAVITY - TEXT_TILTED == CALIBRATION_NO_GRAVITY - CALIBRA
 /* Nested texts: FAULT_BEGIN in the banner, the fault's words in that, CHECK_BUS at the end of those. */
 enum { TEXTS_DEPTH = 3 };
 
-static const uint8_t *at; /* where the reply continues */
+static const uint8_t *at; /* where the reply continues; NULL: none has begun */
 static said_t said;
 static uint8_t again; /* how often the line still repeats */
 
@@ -54,8 +54,13 @@ static uint8_t measured_text(uint8_t kind)
         said.subject = outcome == MEASURE_BEGUN ? kind : calibrate_report()->position;
         return (uint8_t)(TEXT_HOLD_STILL - MEASURE_BEGUN + outcome);
     }
-    said.subject = kind < NOTICE_TARE ? 0 : kind == NOTICE_TARE ? SETTING_LEVEL : SETTING_OFFSET;
-    again = kind < NOTICE_TARE ? 2 : kind == NOTICE_CAL6;
+    if (kind < NOTICE_TARE) {
+        said.subject = 0;
+        again = 2;
+    } else {
+        said.subject = kind == NOTICE_TARE ? SETTING_LEVEL : SETTING_OFFSET;
+        again = kind == NOTICE_CAL6;
+    }
     return (uint8_t)(TEXT_BANNER + kind);
 }
 
@@ -87,15 +92,15 @@ static uint8_t text_of(uint8_t kind)
     return (uint8_t)(TEXT_BANNER + kind);
 }
 
-/* Starts a line, or waits. The very first one ends a line that a reset has cut. */
-static bool begin_line(bool very_first)
+/* Starts a line, or waits. */
+static bool begin_line(void)
 {
     uint8_t code = flash_u8(at);
     if (code == SAY_SENSOR && adxl345_fault() == ADXL345_FAULT_NONE && adxl345_phase() != ADXL345_STREAMING) {
         return false;
     }
     if (code != SAY_HEADER) {
-        text_words(FLASH_TEXT("\n# ") + !very_first);
+        text_words(FLASH_TEXT("# "));
     }
     return true;
 }
@@ -140,8 +145,8 @@ static uint8_t next_code(unpacking_t *u)
     return code;
 }
 
-/* Writes the rest of the line; false: it was the last. */
-static bool write_line(void)
+/* Writes the rest of the line; returns where the next one begins, NULL after the last. */
+static const uint8_t *write_line(void)
 {
     unpacking_t u;
     u.from = at;
@@ -153,32 +158,41 @@ static bool write_line(void)
             if (again != 0) {
                 again--;
                 said.subject++;
-                return true;
+                return at;
             }
         } else if (code == 0 || code >= SAY_LINE) {
-            at = u.from;
-            return goes_on(code);
+            return goes_on(code) ? u.from : 0;
         } else {
             open_text(&u, say(&said, code));
         }
     }
 }
 
-reply_progress_t reply_line(uint8_t kind, uint8_t argument, bool first)
+void reply_start(void)
 {
-    if (first) {
+    at = 0;
+}
+
+bool reply_ended(void)
+{
+    return at == 0;
+}
+
+bool reply_line(uint8_t kind, uint8_t argument)
+{
+    if (reply_ended()) {
         said.subject = argument;
         again = 0;
         uint8_t text = text_of(kind);
         if (text == TEXT_NONE) {
-            return REPLY_WAITS;
+            return false;
         }
         at = reply_text(text);
     }
-    if (!begin_line(first && kind == NOTICE_BANNER)) {
-        return REPLY_WAITS;
+    if (!begin_line()) {
+        return false;
     }
-    bool more = write_line();
+    at = write_line();
     text_close();
-    return more ? REPLY_GOES_ON : REPLY_ENDED;
+    return true;
 }

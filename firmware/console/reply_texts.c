@@ -19,13 +19,8 @@ flash_text_t reply_command_name(uint8_t kind)
 
 const uint8_t *reply_text(uint8_t text)
 {
-    const uint8_t *at = packed_texts + flash_u16(&packed_starts[text / PACKED_STEP]);
-    for (uint8_t ends = text % PACKED_STEP; ends != 0; at++) {
-        if (flash_u8(at) == 0) {
-            ends--;
-        }
-    }
-    return at;
+    const uint8_t *start = packed_texts + flash_u16(&packed_starts[text / PACKED_STEP]);
+    return (const uint8_t *)text_nth((flash_text_t)start, text % PACKED_STEP);
 }
 
 uint8_t reply_pair(uint8_t code, uint8_t half)

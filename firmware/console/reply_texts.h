@@ -82,8 +82,8 @@ enum say {
     SAY_FOREIGN_ADDRESS, /* of a device that is not an ADXL345, and what it reads as DEVID */
     SAY_FOREIGN_ID,
     SAY_LAST_HEXADECIMAL = SAY_FOREIGN_ID,
-    SAY_SHIFT, /* in Q8, for the line's axis: by the self-test */
-    SAY_RMS,
+    SAY_SHIFT, /* of the line's axis, by the self-test */
+    SAY_RMS,   /* in Q8, for the line's axis */
     SAY_R,
     SAY_OFF, /* deviation of the measured rate from the nominal one, % */
     SAY_LAST_Q8 = SAY_OFF,

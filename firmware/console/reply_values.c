@@ -211,6 +211,8 @@ uint8_t say(said_t *said, uint8_t code)
         text_u32(number(said, code));
     } else if (code <= SAY_LAST_HEXADECIMAL) {
         text_hex8(hexadecimal(code));
+    } else if (code == SAY_SHIFT) {
+        number_write((uint32_t)measure_shift_q4(said->subject), 4);
     } else if (code <= SAY_LAST_Q8) {
         number_write((uint32_t)measure_number_q8(code, said->subject), 8);
     } else {

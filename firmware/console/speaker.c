@@ -7,17 +7,10 @@
 #include "output/rows.h"
 #include "settings/settings.h"
 
-static bool begun; /* a line of the oldest notice is out */
-
 /* A reply of many lines, which a person should see whole. */
 static bool is_read(uint8_t kind)
 {
     return kind >= NOTICE_HELP && kind <= NOTICE_LISTING;
-}
-
-void speaker_start(void)
-{
-    begun = false;
 }
 
 bool speaker_pass(void)
@@ -26,15 +19,13 @@ bool speaker_pass(void)
         return false;
     }
     const notice_t *notice = notices_oldest();
-    reply_progress_t progress = reply_line(notice->kind, notice->argument, !begun);
-    if (progress == REPLY_WAITS) {
+    if (!reply_line(notice->kind, notice->argument)) {
         return false;
     }
-    begun = progress == REPLY_GOES_ON;
     if (is_read(notice->kind)) {
         rows_hold();
     }
-    if (!begun) {
+    if (reply_ended()) {
         notices_drop();
     }
     return true;

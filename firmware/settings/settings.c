@@ -18,6 +18,12 @@ settings_t *settings(void)
 
 void settings_defaults(void)
 {
+    calibration_plain(&settings()->calibration, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
+    settings_defaults_beside_calibration();
+}
+
+void settings_defaults_beside_calibration(void)
+{
     settings()->version = SETTINGS_VERSION;
     settings()->length = SETTINGS_KEPT_BYTES;
     settings()->baud = SETTINGS_BAUD_DEFAULT;
@@ -27,7 +33,6 @@ void settings_defaults(void)
     settings_take_filter(0); /* the image's first one */
     settings()->mode = MODE_CSV;
     settings()->address = 0;
-    calibration_plain(&settings()->calibration, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
     settings_follow();
 }
 

@@ -68,6 +68,7 @@ typedef struct {
 settings_t *settings(void);
 
 void settings_defaults(void);
+void settings_defaults_beside_calibration(void); /* leaves the calibration as it is */
 
 /* A byte that identifies each filter of filter_list.h, whichever image has it. */
 uint8_t settings_filter_mark(uint8_t filter);

@@ -38,37 +38,31 @@ static uint8_t kind_marked(uint8_t mark)
     return kind;
 }
 
-/* Finds the filter by its mark; if this image has none, takes its first one with shipped parameters. */
-static void find_filter(void)
+/* Finds the filter by its mark; false: this image has none, its first one is taken with shipped parameters. */
+static bool find_filter(void)
 {
-    settings()->choice.filter = kind_marked(settings()->choice.mark);
-    if (settings()->choice.filter == FILTER_KIND_COUNT) {
+    uint8_t kind = kind_marked(settings()->choice.mark);
+    settings()->choice.filter = kind;
+    if (kind == FILTER_KIND_COUNT) {
         settings_take_filter(0);
-        kept = KEPT_NO_FILTER;
     }
     settings_follow();
-}
-
-/* For settings that another version saved. */
-static void keep_calibration(void)
-{
-    calibration_t saved = settings()->calibration;
-    settings_defaults();
-    settings()->calibration = saved;
-    kept = KEPT_CALIBRATION;
+    return kind != FILTER_KIND_COUNT;
 }
 
 void settings_load(void)
 {
-    kept = (uint8_t)store_load((uint8_t *)settings());
-    if (kept >= KEPT_GOOD && calibration_check(&settings()->calibration).why != CALIBRATION_GOOD) {
-        kept = KEPT_DAMAGED;
+    uint8_t found = (uint8_t)store_load((uint8_t *)settings());
+    if (found >= KEPT_GOOD && calibration_check(&settings()->calibration).why != CALIBRATION_GOOD) {
+        found = KEPT_DAMAGED;
     }
-    if (kept < KEPT_GOOD) {
+    if (found < KEPT_GOOD) {
         settings_defaults();
     } else if (settings()->version != SETTINGS_VERSION) {
-        keep_calibration();
-    } else {
-        find_filter();
+        settings_defaults_beside_calibration();
+        found = KEPT_CALIBRATION;
+    } else if (!find_filter()) {
+        found = KEPT_NO_FILTER;
     }
+    kept = found;
 }

@@ -74,10 +74,11 @@ static const filter_law_t *law_in_force(void)
 static void look_at_row(setting_t *s, uint8_t which)
 {
     const row_t *row = &rows[which];
+    MACHINE_POINTER(row);
     const uint8_t *from = (const uint8_t *)row;
     uint8_t *to = (uint8_t *)&s->format;
-    for (uint8_t i = 0; i < sizeof s->format; i++) {
-        to[i] = flash_u8(from + i);
+    for (uint8_t left = sizeof s->format; left != 0; left--) {
+        *to++ = flash_u8(from++);
     }
     s->least = (int16_t)flash_u16((const uint16_t *)&row->least);
     s->most = (int16_t)flash_u16((const uint16_t *)&row->most);
@@ -138,6 +139,6 @@ uint8_t setting_named(const char *name)
 
 uint32_t setting_choice(const setting_t *s, uint8_t i)
 {
-    uint16_t value = flash_u16(&choices[s->least + i]);
+    uint16_t value = flash_u16(&choices[(uint8_t)(s->least + i)]);
     return s->which == SETTING_BAUD ? (uint32_t)value * BAUD_UNIT : value;
 }

@@ -39,10 +39,11 @@ static uint32_t value_of(const setting_t *s, uint8_t number)
 static void put(const setting_t *s, uint8_t number, uint32_t value)
 {
     uint8_t *at = place_of(s, number);
-    for (uint8_t left = s->format.size; left != 0; left--) {
+    uint8_t left = s->format.size;
+    do {
         *at++ = (uint8_t)value;
         value >>= 8;
-    }
+    } while (--left != 0);
 }
 
 static flash_text_t word(const setting_t *s, uint8_t i)
@@ -59,7 +60,7 @@ static bool take_word(const setting_t *s, const char *text)
         }
         i--;
     } while (!text_equal(text, word(s, i)));
-    put(s, 0, setting_choice(s, i));
+    *place_of(s, 0) = (uint8_t)setting_choice(s, i); /* what has words takes one byte */
     return true;
 }
 
@@ -83,7 +84,7 @@ static bool to_tenths(uint32_t *value)
 {
     uint32_t tenths_q5 = *value * 5u;
     *value = tenths_q5 >> 5;
-    return (tenths_q5 & 31u) == 0;
+    return ((uint8_t)tenths_q5 & 31u) == 0;
 }
 
 static bool take_numbers(const setting_t *s, const char *text)
@@ -99,24 +100,28 @@ static bool take_numbers(const setting_t *s, const char *text)
     return *text == '\0';
 }
 
-/* Each of x, y, z once, with a sign if reversed. A mirror image is refused: a board cannot be mounted that way. */
+/*
+ * x, y, z in any order, with a sign if reversed; calibration_check refuses one that comes twice. A mirror image is
+ * refused: a board cannot be mounted that way.
+ */
 static bool take_axes(const char *text)
 {
-    enum { XYZ = 0x123, YZX = 0x231, ZXY = 0x312 };
-    uint16_t order = 0;
+    int8_t axis = 0;
+    int8_t previous = 0;
     bool mirrored = true;
     for (uint8_t i = 0; i < AXES; i++) {
         bool reversed = *text == '-';
         text += reversed;
-        int8_t axis = (int8_t)(*text++ - ('x' - 1));
+        previous = axis;
+        axis = (int8_t)(*text++ - ('x' - 1));
         if (axis < 1 || axis > AXES) {
             return false;
         }
-        order = (uint16_t)(order << 4 | (uint8_t)axis);
         mirrored ^= reversed;
         settings()->calibration.axes[i] = (int8_t)(reversed ? -axis : axis);
     }
-    bool turned = order == XYZ || order == YZX || order == ZXY;
+    int8_t step = (int8_t)(axis - previous);
+    bool turned = step == 1 || step == 1 - AXES; /* y after x, z after y, x after z */
     return turned == mirrored && *text == '\0';
 }
 
@@ -132,23 +137,13 @@ static bool take(const setting_t *s, const char *text)
     }
 }
 
-/* Whether the filter accepts the user's parameters including this one. */
-static setting_answer_t judge_parameter(uint8_t which)
-{
-    uint8_t own = settings()->choice.own;
-    settings()->choice.own = (uint8_t)(own | 1u << which);
-    if (choice_legal(&settings()->choice, settings()->rate_dhz)) {
-        return SETTING_TAKEN;
-    }
-    settings()->choice.own = own;
-    return SETTING_ILLEGAL;
-}
-
-/* Judges all settings including the new one. */
+/* Judges all settings including the new one; one of the filter's parameters becomes the user's own. */
 static setting_answer_t judge(const setting_t *s)
 {
     if (s->which >= SETTING_PARAMETERS) {
-        return judge_parameter((uint8_t)(s->which - SETTING_PARAMETERS));
+        filter_choice_t *choice = &settings()->choice;
+        choice->own = (uint8_t)(choice->own | 1u << (s->which - SETTING_PARAMETERS));
+        return choice_legal(choice, settings()->rate_dhz) ? SETTING_TAKEN : SETTING_ILLEGAL;
     }
     if (!settings_fit(settings()->choice.filter, settings()->rate_dhz)) {
         return SETTING_TOO_SLOW;
@@ -156,35 +151,40 @@ static setting_answer_t judge(const setting_t *s)
     return calibration_check(&settings()->calibration).why == CALIBRATION_GOOD ? SETTING_TAKEN : SETTING_ILLEGAL;
 }
 
-/* Copies bytes to where they are kept; true: they differ from the previous ones. */
-static bool keep(uint8_t *to, const uint8_t *from, uint8_t bytes)
+/* Bytes of the largest setting; those after a smaller one stay as they are. */
+enum { PLACE_BYTES = AXES * sizeof(int16_t) };
+
+/* Copies a setting's bytes to where they are kept; true: they differ from the previous ones. */
+static bool keep(uint8_t *to, const uint8_t *from)
 {
     bool differ = false;
-    for (; bytes != 0; bytes--, to++, from++) {
-        differ = differ || *to != *from;
-        *to = *from;
+    for (uint8_t left = PLACE_BYTES; left != 0; left--, to++, from++) {
+        if (*to != *from) {
+            *to = *from;
+            differ = true;
+        }
     }
     return differ;
 }
 
 setting_answer_t setting_set(uint8_t which, const char *text, uint8_t *starts)
 {
-    static uint8_t before[AXES * sizeof(int16_t)];
+    static uint8_t before[PLACE_BYTES];
     setting_t s;
     setting_look(&s, which);
     uint8_t *place = place_of(&s, 0);
-    uint8_t bytes = s.format.size;
-    if (s.format.kind >= VECTOR) {
-        bytes = (uint8_t)((uint16_t)bytes * AXES);
-    }
     uint8_t own = settings()->choice.own;
-    (void)keep(before, place, bytes);
+    (void)keep(before, place);
     setting_answer_t answer = take(&s, text) ? judge(&s) : SETTING_ILLEGAL;
-    bool changed = answer == SETTING_TAKEN ? keep(before, place, bytes) : keep(place, before, bytes);
-    changed = changed || own != settings()->choice.own; /* the value is as before, but was not in force */
-    *starts = changed ? s.format.starts : 0;
-    if (which == SETTING_FILTER && *starts != 0) {
-        settings_take_filter(settings()->choice.filter);
+    *starts = 0;
+    if (answer != SETTING_TAKEN) {
+        (void)keep(place, before);
+        settings()->choice.own = own;
+    } else if (keep(before, place) || own != settings()->choice.own) { /* own: the value may be as before */
+        *starts = s.format.starts;
+        if (which == SETTING_FILTER) {
+            settings_take_filter(settings()->choice.filter);
+        }
     }
     return answer;
 }
@@ -254,7 +254,7 @@ void setting_write_legal(uint8_t which)
     } else if (s.format.kind > LIST) {
         write_range(&s);
     } else {
-        for (uint8_t i = 0; i < s.most; i++) {
+        for (uint8_t i = 0; i < (uint8_t)s.most; i++) {
             if (i != 0) {
                 text_char(' ');
             }

@@ -63,6 +63,8 @@ static void test_a_filter_too_slow_for_the_rate_is_refused(void)
 {
     board_start_with_a_slow_processor();
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
+    type_and_read("filter {robust}", "# filter {robust}");
+    type_and_read("gate 4", "# gate 4 sigma: 1 to 16, 0: off"); /* stays in force */
     settings_t kept = *settings();
     size_t rows = board.row_count;
     type_and_read("filter {slowest}", "# refused 5: takes 13050 of 12075 cycles a sample");
