@@ -7,13 +7,14 @@
 #include "base/choice.h"
 #include "base/counters.h"
 #include "machine.h"
+#include "path/gravity.h"
 #include "path/silence.h"
 #include "path/supervisor.h"
 #include "tilt_axis.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
 enum { HUNG_SAMPLES = 16 };                /* samples in a row with ROW_STUCK: a filter has learned from them */
-enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_retime; 1 degree */
+enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_each_second; 1 degree */
 
 /* What pipeline_work is to take through the filters: a sample, or the place of a missing one. */
 typedef enum { WORK_NONE, WORK_SAMPLE, WORK_COAST } work_t;
@@ -105,7 +106,14 @@ static void begin_all(bool cold)
     p->to_begin = AXES;
 }
 
-void pipeline_retime(uint32_t period_us)
+static void estimates(int32_t lsb_q8[AXES])
+{
+    for (const tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
+        *lsb_q8++ = tilt_axis_estimate_q8(axis);
+    }
+}
+
+void pipeline_each_second(uint32_t period_us)
 {
     bool still = true;
     for (uint8_t axis = 0; axis < AXES; axis++) {
@@ -114,6 +122,13 @@ void pipeline_retime(uint32_t period_us)
             still = false;
         }
         pipeline.looked_lsb_q2[axis] = now_lsb_q2;
+    }
+    if (still && pipeline.has_sample) {
+        int32_t lsb_q8[AXES];
+        int32_t a_q8[AXES];
+        estimates(lsb_q8);
+        calibration_apply(&pipeline.applied, lsb_q8, a_q8);
+        gravity_second(a_q8);
     }
     uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
     uint16_t near_dhz = (pipeline.true_dhz >> 7) + 1u;
@@ -183,6 +198,7 @@ void pipeline_forget(void)
 {
     pipeline.has_sample = false;
     pipeline.stuck = 0;
+    gravity_forget();
 }
 
 static void count_sample(uint8_t flags)
@@ -337,11 +353,8 @@ void pipeline_row(row_t *row)
 {
     int32_t estimates_q8[AXES];
     static int32_t a_q8[AXES]; /* cheaper to access than on the stack */
-    int32_t *estimate = estimates_q8;
-    MACHINE_POINTER(row); /* with its address in a register, each access takes half the code */
-    for (const tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
-        *estimate++ = tilt_axis_estimate_q8(axis);
-    }
+    MACHINE_POINTER(row);      /* with its address in a register, each access takes half the code */
+    estimates(estimates_q8);
     uint16_t flags = pipeline.flags;
 #if SUPERVISOR
     if (supervisor_complete(pipeline.calibration, estimates_q8)) {
