@@ -105,7 +105,7 @@ const char *broken_mixture(const filter_t *f)
 static const char *broken_tracker(const filter_t *f, bool fine, bool difference)
 {
     uint32_t most = fine ? RATE_MAX_FINE_Q24 : difference ? 2U * X_MAX_Q16 : X_MAX_Q16;
-    if (f->rate_max_lsb > most || filter_fx_abs32(f->rate_lsb) > (difference ? 2U * X_MAX_Q16 : f->rate_max_lsb)) {
+    if (f->rate_max_lsb > most || filter_fx_abs32(f->rate_lsb) > f->rate_max_lsb) {
         return "rate";
     }
     if (f->size_lsb_uq16 > (uint32_t)8704 << 16) {

@@ -17,11 +17,11 @@ static double noise_gain(const filter_t *f)
 }
 #endif
 
-/* synth.h: v and v' are the last two steps of the estimate, each within twice its bound. */
+/* synth.h: v and v' are within the limit of the rate. */
 static const char *broken_running_estimates(const filter_t *f)
 {
     const filter_synth_t *s = &f->own.synth;
-    if (filter_fx_abs32(s->rate_before_lsb_q16) > 2U * X_MAX_Q16) {
+    if (filter_fx_abs32(s->rate_before_lsb_q16) > f->rate_max_lsb) {
         return "rate before";
     }
     bool steady = s->count == (uint8_t)SYNTH_STEADY;
