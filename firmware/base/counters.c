@@ -21,9 +21,9 @@ void count(uint8_t what)
 {
     uint32_t *counter = &counters[what];
     MACHINE_POINTER(counter);
-    uint32_t next = *counter + 1u;
-    if (next != 0) {
-        *counter = next;
+    uint32_t now = *counter;
+    if (now != UINT32_MAX) {
+        *counter = now + 1u;
     }
 }
 

@@ -93,7 +93,7 @@ store_status_t store_load(uint8_t record[STORE_RECORD_SIZE])
     while (!hal_eeprom_ready()) {
     }
     store_status_t other = fetch(COPY_0);
-    uint8_t before = record[SEQUENCE];
+    uint8_t before = save.record[SEQUENCE];
     store_status_t status = fetch(COPY_1);
     save.copy = COPY_1;
     if (other > status || (other == status && ((uint8_t)(record[SEQUENCE] - before) & SEQUENCE_HALF) != 0)) {

@@ -8,13 +8,11 @@ void tearDown(void) {}
 
 static void make(filter_t *f, int32_t variant_u, int32_t p0_lsb2_q8, int32_t r_lsb2_q8)
 {
-    filter_config_t config = {
-        1000,
-        { [SYNTH_OPT_VARIANT_U] = variant_u,
-          [SYNTH_OPT_P0_LSB2_Q8] = p0_lsb2_q8,
-          [SYNTH_OPT_R_LSB2_Q8] = r_lsb2_q8,
-          [SYNTH_OPT_RATE_MAX_LSB_S] = RATE_UNLIMITED_LSB_S }
-    };
+    filter_config_t config = { 1000,
+                               { [SYNTH_OPT_VARIANT_U] = variant_u,
+                                 [SYNTH_OPT_P0_LSB2_Q8] = p0_lsb2_q8,
+                                 [SYNTH_OPT_R_LSB2_Q8] = r_lsb2_q8,
+                                 [SYNTH_OPT_RATE_MAX_LSB_S] = RATE_UNLIMITED_LSB_S } };
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_synth_opt, &config));
 }
 
@@ -210,12 +208,11 @@ static void default_p0_is_that_of_the_median(void)
 static void parameters_outside_are_refused(void)
 {
     filter_t f;
-    const filter_config_t legal = {
-        1000, { [SYNTH_OPT_VARIANT_U] = 1,
-                [SYNTH_OPT_P0_LSB2_Q8] = 3,
-                [SYNTH_OPT_R_LSB2_Q8] = 3,
-                [SYNTH_OPT_RATE_MAX_LSB_S] = 10 }
-    };
+    const filter_config_t legal = { 1000,
+                                    { [SYNTH_OPT_VARIANT_U] = 1,
+                                      [SYNTH_OPT_P0_LSB2_Q8] = 3,
+                                      [SYNTH_OPT_R_LSB2_Q8] = 3,
+                                      [SYNTH_OPT_RATE_MAX_LSB_S] = 10 } };
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_opt, &legal));
     filter_config_t config = legal;
     config.value[SYNTH_OPT_VARIANT_U] = 2;

@@ -5,7 +5,7 @@
 #ifndef SYNTH_BOUNDS_H
 #define SYNTH_BOUNDS_H
 
-#define RATE_END 603979776    /* 9216 LSB: the difference of two estimates */
+#define RATE_END 603979776 /* 9216 LSB: the difference of two estimates */
 #define TURN_END RATE_END
 #define MEMORY_Q16 1207959552 /* 18432 LSB */
 #define BENT_END 1835008000   /* 28000 LSB: both, and what their rounding in two halves adds */

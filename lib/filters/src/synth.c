@@ -26,7 +26,8 @@
 
 LAW_PARAMETER(a1, "a1\0", 16, 0, -65535, 65535, 0);
 LAW_PARAMETER(b0, "b0\0", 16, 0, SYNTH_B0_MIN_UQ16, SYNTH_B0_MAX_UQ16, 19661);
-static const filter_parameter_t *const parameters[] IN_FLASH = { &a1, &b0, &filter_parameter_r, &filter_parameter_ratemax };
+static const filter_parameter_t *const parameters[] IN_FLASH = { &a1, &b0, &filter_parameter_r,
+                                                                 &filter_parameter_ratemax };
 
 /* |a1| (1 - b0), UQ0.32, exact. */
 static uint32_t memory_uq32(uint16_t b0_uq16, uint16_t a1_uq16)

@@ -34,7 +34,8 @@ enum { LIMIT = (int)SYNTH_OPT_COMMON + (int)SYNTH_OPT_STEPS };
 
 LAW_PARAMETER(u, "u\0", 0, 0, 0, 1, 0);
 LAW_PARAMETER(p0, "p0\0LSB2", 8, 0, 3, 25600000, 0);
-static const filter_parameter_t *const parameters[] IN_FLASH = { &u, &p0, &filter_parameter_r, &filter_parameter_ratemax };
+static const filter_parameter_t *const parameters[] IN_FLASH = { &u, &p0, &filter_parameter_r,
+                                                                 &filter_parameter_ratemax };
 
 static void standard(filter_config_t *config)
 {
