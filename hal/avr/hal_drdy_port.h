@@ -40,4 +40,9 @@ HAL_BODY bool hal_drdy_flickers(void)
     return GPIOR2 != 0;
 }
 
+HAL_BODY bool hal_drdy_high(void)
+{
+    return !hal_drdy_flickers() && (PIND & _BV(PD2)) != 0;
+}
+
 #endif
