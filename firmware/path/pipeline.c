@@ -106,28 +106,30 @@ static void begin_all(bool cold)
     p->to_begin = AXES;
 }
 
-static void estimates(int32_t lsb_q8[AXES])
+/* Accelerations from readings or estimates, LSB in Q8, and their angles. Expensive: for rows, and once a second. */
+static void find_angles(tilt_t *tilt, const int32_t lsb_q8[3], int32_t a_q8[3])
 {
-    for (const tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
-        *lsb_q8++ = tilt_axis_estimate_q8(axis);
-    }
+    calibration_apply(&pipeline.applied, lsb_q8, a_q8);
+    tilt_angles(tilt, a_q8);
 }
 
 void pipeline_each_second(uint32_t period_us)
 {
     bool still = true;
+    int32_t estimates_q8[AXES];
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        uint16_t now_lsb_q2 = (uint16_t)(tilt_axis_estimate_q8(&pipeline.axes[axis]) >> 6);
+        int32_t estimate_q8 = tilt_axis_estimate_q8(&pipeline.axes[axis]);
+        estimates_q8[axis] = estimate_q8;
+        uint16_t now_lsb_q2 = (uint16_t)(estimate_q8 >> 6);
         if ((uint16_t)(now_lsb_q2 - pipeline.looked_lsb_q2[axis] + STILL_LSB_Q2) > 2u * STILL_LSB_Q2) {
             still = false;
         }
         pipeline.looked_lsb_q2[axis] = now_lsb_q2;
     }
     if (still && pipeline.has_sample) {
-        int32_t lsb_q8[AXES];
+        tilt_t tilt;
         int32_t a_q8[AXES];
-        estimates(lsb_q8);
-        calibration_apply(&pipeline.applied, lsb_q8, a_q8);
+        find_angles(&tilt, estimates_q8, a_q8);
         gravity_second(a_q8);
     }
     uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
@@ -327,13 +329,6 @@ static int16_t to_mg(int32_t value_q8)
     return (int16_t)((value_q8 * 1000 + 32768) >> 16);
 }
 
-/* Accelerations from readings or estimates, LSB in Q8, and their angles. For rows only, because it is expensive. */
-static void find_angles(tilt_t *tilt, const int32_t lsb_q8[3], int32_t a_q8[3])
-{
-    calibration_apply(&pipeline.applied, lsb_q8, a_q8);
-    tilt_angles(tilt, a_q8);
-}
-
 /* Adds what the acceleration of this row and the pipeline's state say. */
 static uint16_t with_state(uint16_t flags, const int32_t a_q8[3])
 {
@@ -353,8 +348,11 @@ void pipeline_row(row_t *row)
 {
     int32_t estimates_q8[AXES];
     static int32_t a_q8[AXES]; /* cheaper to access than on the stack */
+    int32_t *estimate = estimates_q8;
     MACHINE_POINTER(row);      /* with its address in a register, each access takes half the code */
-    estimates(estimates_q8);
+    for (const tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
+        *estimate++ = tilt_axis_estimate_q8(axis);
+    }
     uint16_t flags = pipeline.flags;
 #if SUPERVISOR
     if (supervisor_complete(pipeline.calibration, estimates_q8)) {

@@ -8,6 +8,7 @@
 
 struct float_synth {
     float x1, x2, x3;
+    float most; /* LSB a sample */
     float a1, b0;
 #ifdef FLOAT_KEPT
     float c1; /* 2 - a1 */
@@ -32,6 +33,7 @@ void float_synth_start(float_synth_t *f, const filter_config_t *config, float x0
     f->c1 = 2.0f - f->a1;
     f->c2 = 1.0f - 2.0f * f->a1;
 #endif
+    f->most = 10.0f * (float)config->value[SYNTH_RATE_MAX_LSB_S] / (float)config->rate_dhz;
     f->x1 = x0_lsb;
     f->x2 = x0_lsb;
     f->x3 = x0_lsb;
@@ -58,6 +60,10 @@ static float shift(float_synth_t *f, float x)
     f->x3 = f->x2;
     f->x2 = f->x1;
     f->x1 = x;
+    float step = f->x1 - f->x2;
+    float over = (step > f->most) ? step - f->most : (step < -f->most) ? step + f->most : 0.0f;
+    f->x2 += over; /* the steps after it go on from there */
+    f->x3 += over;
     return x;
 }
 

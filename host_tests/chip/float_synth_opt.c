@@ -8,6 +8,7 @@
 
 struct float_synth_opt {
     float x1, x2, x3;
+    float most;                         /* LSB a sample */
     float s11, s12, s13, s22, s23, s33; /* covariance of the last three errors */
     float r;
     float p1, p2, p3, p4, p5; /* of variant U: past variances */
@@ -29,6 +30,7 @@ void float_synth_opt_start(float_synth_opt_t *f, const filter_config_t *config, 
     f->r = (float)config->value[SYNTH_OPT_R_LSB2_Q8] / 256.0f;
     f->s11 = f->s12 = f->s13 = f->s22 = f->s23 = f->s33 = p0;
     f->p1 = f->p2 = f->p3 = f->p4 = f->p5 = p0;
+    f->most = 10.0f * (float)config->value[SYNTH_OPT_RATE_MAX_LSB_S] / (float)config->rate_dhz;
     f->x1 = f->x2 = f->x3 = x0_lsb;
 }
 
@@ -70,6 +72,10 @@ static float shift(float_synth_opt_t *f, float x)
     f->x3 = f->x2;
     f->x2 = f->x1;
     f->x1 = x;
+    float step = f->x1 - f->x2;
+    float over = step - limited(step, -f->most, f->most);
+    f->x2 += over; /* the steps after it go on from there */
+    f->x3 += over;
     return x;
 }
 

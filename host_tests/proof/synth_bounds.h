@@ -27,9 +27,9 @@
 /*@ requires WITHIN(f->x_lsb_q16, X_MAX_Q16);
     requires WITHIN(f->rate_lsb, BENT_END);
     requires SAMPLE(z_lsb);
-    requires f->size_lsb_uq16 <= SIZE_END && FLAG(f->negative) && f->rate_max_lsb <= TURN_END;
+    requires f->size_lsb_uq16 <= SIZE_END && FLAG(f->negative);
     assigns f->x_lsb_q16, f->rate_lsb, f->size_lsb_uq16, f->negative, f->flags \from f->x_lsb_q16, f->rate_lsb,
-            f->size_lsb_uq16, f->negative, f->flags, f->gain_uq16, f->rate_max_lsb, z_lsb, what;
+            f->size_lsb_uq16, f->negative, f->flags, f->gain_uq16, z_lsb, what;
     ensures WITHIN(f->x_lsb_q16, X_MAX_Q16) && WITHIN(f->rate_lsb, RATE_END);
     ensures f->size_lsb_uq16 <= SIZE_END && FLAG(f->negative);
 */

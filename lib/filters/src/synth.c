@@ -109,6 +109,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
         s->rate_before_lsb_q16 = f->rate_lsb;
         filter_synth_step(f, z_lsb, what);
     }
+    filter_tracker_turn(f, 0); /* within ratemax */
 }
 
 /* Variance of one sample until the gain is steady, then R times the noise gain, limited to 32 bits. */

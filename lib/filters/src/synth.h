@@ -37,8 +37,7 @@ uint16_t filter_synth_next_gain_uq16(filter_t *f);
 
 /*
  * One step: prediction by v, to which the law has added its addend, |addend| <= 18432 LSB (with |2 x1 - x2| <= 13824
- * the sum stays below 2^31 in Q16), then the correction of x and v with f->gain_uq16, or none without a sample, and the
- * limit of v. At its bound x takes what v has too much from it.
+ * the sum stays below 2^31 in Q16), then the correction with f->gain_uq16, or none without a sample.
  */
 void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what);
 

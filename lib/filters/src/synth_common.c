@@ -43,23 +43,20 @@ uint16_t filter_synth_next_gain_uq16(filter_t *f)
 
 void filter_synth_step(filter_t *f, int16_t z_lsb, uint8_t what)
 {
-    int32_t correction = 0;
     int32_t before = f->x_lsb_q16;
     tracker_predict(f);
-    f->rate_lsb = f->x_lsb_q16 - before;
     if (what != STEP_MISSING) {
         filter_tracker_meet(f, z_lsb);
-        correction = (int32_t)filter_fx_mul_uq16(f->size_lsb_uq16, f->gain_uq16);
-        filter_tracker_move(f, correction);
+        filter_tracker_move(f, (int32_t)filter_fx_mul_uq16(f->size_lsb_uq16, f->gain_uq16));
     }
-    filter_tracker_turn(f, correction);
+    f->rate_lsb = f->x_lsb_q16 - before;
 }
 
 void filter_synth_bent_step(filter_t *f, int16_t z_lsb, uint8_t what, uint16_t a1_uq16)
 {
     filter_synth_t *s = &f->own.synth;
     int32_t rate = f->rate_lsb;
-    int32_t bend = rate - s->rate_before_lsb_q16; /* x1 - 2 x2 + x3, < 18432 LSB */
+    int32_t bend = rate - s->rate_before_lsb_q16; /* x1 - 2 x2 + x3 < 18432 LSB */
     s->rate_before_lsb_q16 = rate;
     int32_t part = (int32_t)filter_fx_mul_uq16(filter_fx_abs32(bend), a1_uq16);
     f->rate_lsb = ((bend < 0) != s->a1_negative) ? rate + part : rate - part;

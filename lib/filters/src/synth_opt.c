@@ -109,6 +109,7 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     } else {
         scheduled_step(f, z_lsb, what);
     }
+    filter_tracker_turn(f, 0); /* within ratemax */
 }
 
 /*
