@@ -126,7 +126,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 
 const filter_law_t filter_law_synth IN_FLASH = { .name = "synth",
                                                  .parameter_count = 4,
-                                                 .worst_cycles = 670,
+                                                 .worst_cycles = 745,
                                                  .parameters = parameters,
                                                  .together = together,
                                                  .set_up = set_up,

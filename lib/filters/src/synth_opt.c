@@ -131,7 +131,7 @@ static void report(const filter_t *f, filter_probe_t *out)
 
 const filter_law_t filter_law_synth_opt IN_FLASH = { .name = "synth_opt",
                                                      .parameter_count = 4,
-                                                     .worst_cycles = 670,
+                                                     .worst_cycles = 745,
                                                      .parameters = parameters,
                                                      .standard = standard,
                                                      .set_up = set_up,
