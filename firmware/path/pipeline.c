@@ -349,7 +349,7 @@ void pipeline_row(row_t *row)
     int32_t estimates_q8[AXES];
     static int32_t a_q8[AXES]; /* cheaper to access than on the stack */
     int32_t *estimate = estimates_q8;
-    MACHINE_POINTER(row);      /* with its address in a register, each access takes half the code */
+    MACHINE_POINTER(row); /* with its address in a register, each access takes half the code */
     for (const tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
         *estimate++ = tilt_axis_estimate_q8(axis);
     }
