@@ -34,7 +34,7 @@ REST = "rest"
 PARTS = {
     "noise estimate": "filter_noise_* estimate_noise",
     "filters": "filter_update filter_set_noise",
-    "calibration and gravity": "calibration_* tilt_gravity_* square_q12 gravity_* tilt_axis_estimate_*",
+    "calibration and gravity": "calibration_* tilt_gravity_* tilt_axis_estimate_*",
     "angles": "tilt_angles",
     "row: mg": "to_mg",
     "row: format": "write_csv",
@@ -51,7 +51,7 @@ PARTS = {
 }
 OWN = {
     "glue per axis": "filter_axes tilt_axis_update tilt_at_rail flags_of",
-    "glue per sample": "pipeline_work begin_next pipeline_sample count_sample hung silence_* pipeline_each_second",
+    "glue per sample": "pipeline_work begin_next pipeline_sample count_sample hung silence_* pipeline_retime",
     "row: rest": "write_row settings_every_in_force rows_sample rows_at_once newest_time pipeline_row with_state find_angles pipeline_row_done write",
     "main loop": "main app_pass serve work_piece filter_samples next_sample pass_* control_follow "
                  "control_line_waits measure_asks measure_borrows store_busy",

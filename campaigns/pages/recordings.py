@@ -27,7 +27,8 @@ PAGE = Results(DOCUMENT, "Real recordings: results", "make recordings", ABOUT)
 OF_STREAMS = "Hz is the sensor's nominal rate; in brackets the rate of the rows, where a board polled faster or slower."
 OF_RULES = """\
 Samples of all axes. The rules that show divergence are derived in `host_tests/support/envelope.h`; a share of 1 is the limit. Empty: the filter has
-none. Saturated: a state was held at its bound, for the filters with a limit of the rate as a rule that, in fast motion."""
+none. Saturated: a state was held at its bound, for the filters with a limit of the rate as a rule that: in fast motion; of
+synthesised filters, whose rate is a step between two estimates, also among noise."""
 OF_GATED = """\
 Refused, limited or taken in part; with the mixtures: more likely an outlier than not. Filters that gate nothing are left out."""
 OF_AGAIN = "Sum of the three axes; the longest run on any axis."

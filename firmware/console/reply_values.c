@@ -22,7 +22,7 @@
 #include "settings/settings_table.h"
 
 _Static_assert(TEXT_KEPT_CALIBRATION - TEXT_KEPT_DAMAGED == KEPT_CALIBRATION - KEPT_DAMAGED, "words for what was kept");
-_Static_assert(TEXT_OTHER_PART - TEXT_NO_SENSOR == ADXL345_FAULT_OTHER_PART - 1, "words for each fault");
+_Static_assert(TEXT_INT1_FLICKERS - TEXT_NO_SENSOR == ADXL345_FAULT_INT1_FLICKERS - 1, "words for each fault");
 _Static_assert(TEXT_WATCHDOG - TEXT_POWER_ON == HAL_RESET_WATCHDOG, "words for each cause");
 _Static_assert(TEXT_STATE_FAULTY - TEXT_STATE_STOPPED == ADXL345_FAULTY, "words for each phase");
 
@@ -145,7 +145,7 @@ static uint8_t text_chosen(said_t *said, uint8_t what)
         said->subject = SETTING_EVERY;
         return TEXT_SETTING;
     case SAY_SENSOR:
-        said->subject = sensor_watch_fault();
+        said->subject = (uint8_t)adxl345_fault();
         return said->subject == ADXL345_FAULT_NONE ? TEXT_SENSOR : TEXT_FAULT_BEGIN;
     case SAY_FAULT_WORDS:
         return (uint8_t)(TEXT_NO_SENSOR - ADXL345_FAULT_NO_SENSOR + said->subject);

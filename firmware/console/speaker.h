@@ -4,8 +4,6 @@
 
 #include <stdbool.h>
 
-/* No line of a notice is out yet. */
-
 /* Prints at most one line, if there is room for it and a data row; false: there is nothing to do, or it waits. */
 bool speaker_pass(void);
 

@@ -8,7 +8,6 @@
 #include "base/notices.h"
 #include "hal_led.h"
 #include "machine.h"
-#include "path/gravity.h"
 #include "settings/settings.h"
 
 /* Half a slot of the LED's pattern is 2^16 us; eight slots are about a second. */
@@ -23,7 +22,7 @@ static const uint8_t flashes[] IN_FLASH = {
     [ADXL345_FAULT_READ_BACK] = 2,     [ADXL345_FAULT_INT1_SILENT] = 3, [ADXL345_FAULT_NO_DATA] = 2,
     [ADXL345_FAULT_SCL_LOW] = 1,       [ADXL345_FAULT_SDA_LOW] = 1,     [ADXL345_FAULT_INT1_STUCK] = 3,
     [ADXL345_FAULT_STUCK] = 4,         [ADXL345_FAULT_TORN] = 4,        [ADXL345_FAULT_TWO_SENSORS] = 4,
-    [ADXL345_FAULT_INT1_FLICKERS] = 3, [ADXL345_FAULT_OTHER_PART] = 4,
+    [ADXL345_FAULT_INT1_FLICKERS] = 3,
 };
 
 typedef struct {
@@ -38,12 +37,6 @@ typedef struct {
 
 static watch_t watch;
 static sensor_outage_t reported;
-
-uint8_t sensor_watch_fault(void)
-{
-    uint8_t fault = (uint8_t)adxl345_fault();
-    return fault == ADXL345_FAULT_NONE && gravity_absent() ? (uint8_t)ADXL345_FAULT_OTHER_PART : fault;
-}
 
 const sensor_outage_t *sensor_watch_outage(void)
 {
@@ -133,7 +126,7 @@ static void tell(void)
 
 void sensor_watch_pass(uint32_t now_us)
 {
-    uint8_t fault = sensor_watch_fault();
+    uint8_t fault = (uint8_t)adxl345_fault();
     show(fault, now_us);
     if (adxl345_phase() == ADXL345_STOPPED) {
         forget(); /* not repaired, just not polled */

@@ -4,9 +4,6 @@
 
 #include <stdint.h>
 
-/* The fault in force, adxl345_fault_t: the driver's, else that the sensor at rest does not read gravity. */
-uint8_t sensor_watch_fault(void);
-
 /* Call when rows start; a fault present by then was reported by the banner. */
 void sensor_watch_start(uint32_t now_us);
 

@@ -7,14 +7,13 @@
 #include "base/choice.h"
 #include "base/counters.h"
 #include "machine.h"
-#include "path/gravity.h"
 #include "path/silence.h"
 #include "path/supervisor.h"
 #include "tilt_axis.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
 enum { HUNG_SAMPLES = 16 };                /* samples in a row with ROW_STUCK: a filter has learned from them */
-enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_each_second; 1 degree */
+enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_retime; 1 degree */
 
 /* What pipeline_work is to take through the filters: a sample, or the place of a missing one. */
 typedef enum { WORK_NONE, WORK_SAMPLE, WORK_COAST } work_t;
@@ -47,7 +46,7 @@ static struct pipeline {
     tilt_axis_t axes[AXES];
 } pipeline;
 
-/* With its address in a register, each access takes half the code, but not to what lies behind 64 bytes. */
+/* With its address in a register, each access takes half the code, but only within its first 64 bytes. */
 static inline struct pipeline *here(void)
 {
     struct pipeline *p = &pipeline;
@@ -106,31 +105,15 @@ static void begin_all(bool cold)
     p->to_begin = AXES;
 }
 
-/* Accelerations from readings or estimates, LSB in Q8, and their angles. Expensive: for rows, and once a second. */
-static void find_angles(tilt_t *tilt, const int32_t lsb_q8[3], int32_t a_q8[3])
-{
-    calibration_apply(&pipeline.applied, lsb_q8, a_q8);
-    tilt_angles(tilt, a_q8);
-}
-
-void pipeline_each_second(uint32_t period_us)
+void pipeline_retime(uint32_t period_us)
 {
     bool still = true;
-    int32_t estimates_q8[AXES];
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        int32_t estimate_q8 = tilt_axis_estimate_q8(&pipeline.axes[axis]);
-        estimates_q8[axis] = estimate_q8;
-        uint16_t now_lsb_q2 = (uint16_t)(estimate_q8 >> 6);
+        uint16_t now_lsb_q2 = (uint16_t)(tilt_axis_estimate_q8(&pipeline.axes[axis]) >> 6);
         if ((uint16_t)(now_lsb_q2 - pipeline.looked_lsb_q2[axis] + STILL_LSB_Q2) > 2u * STILL_LSB_Q2) {
             still = false;
         }
         pipeline.looked_lsb_q2[axis] = now_lsb_q2;
-    }
-    if (still && pipeline.has_sample) {
-        tilt_t tilt;
-        int32_t a_q8[AXES];
-        find_angles(&tilt, estimates_q8, a_q8);
-        gravity_second(a_q8);
     }
     uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
     uint16_t near_dhz = (pipeline.true_dhz >> 7) + 1u;
@@ -200,7 +183,6 @@ void pipeline_forget(void)
 {
     pipeline.has_sample = false;
     pipeline.stuck = 0;
-    gravity_forget();
 }
 
 static void count_sample(uint8_t flags)
@@ -327,6 +309,13 @@ static int16_t to_mg(int32_t value_q8)
         return value_q8 < 0 ? -32000 : 32000;
     }
     return (int16_t)((value_q8 * 1000 + 32768) >> 16);
+}
+
+/* Accelerations from readings or estimates, LSB in Q8, and their angles. For rows only, because it is expensive. */
+static void find_angles(tilt_t *tilt, const int32_t lsb_q8[3], int32_t a_q8[3])
+{
+    calibration_apply(&pipeline.applied, lsb_q8, a_q8);
+    tilt_angles(tilt, a_q8);
 }
 
 /* Adds what the acceleration of this row and the pipeline's state say. */

@@ -67,10 +67,10 @@ void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t r
 /*
  * Call each second with the measured time between samples. If the measured rate differs from the filters' by more than
  * 1/128 and 0.1 Hz for 5 seconds, the filters continue from their outputs with the parameters of the measured rate.
- * That loses their rates of change, so it waits until the board is at rest: each axis' estimate is where it was a
- * second ago, within a degree (4.5 LSB). No row shows it.
+ * That loses their rates of change, so it waits until each axis' estimate is where it was a second ago, within a degree
+ * (4.5 LSB). No row shows it.
  */
-void pipeline_each_second(uint32_t period_us);
+void pipeline_retime(uint32_t period_us);
 
 /*
  * One piece of the work that pipeline_change, _retime, _coast or _sample has started: the filter of an axis changed,

@@ -19,7 +19,7 @@ typedef enum { MODE_CSV, MODE_PLOT } output_mode_t;
  * Version of the saved bytes: raised when one of them changes its meaning. Version, length and calibration have the
  * same place in every version, so that a calibration survives an update; what follows them depends on the version.
  */
-#define SETTINGS_VERSION 2u
+#define SETTINGS_VERSION 1u
 
 /* Little-endian on PC and chip and without padding in the saved part: its bytes are the image that `save` writes. */
 typedef struct {

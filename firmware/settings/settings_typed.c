@@ -1,4 +1,6 @@
 /* Typed text to values and back; see settings_table.h. Values are stored as in settings.h and filter.h. */
+#include <stddef.h>
+
 #include "base/number.h"
 #include "base/text.h"
 #include "settings/settings.h"
@@ -153,6 +155,9 @@ static setting_answer_t judge(const setting_t *s)
 
 /* Bytes of the largest setting; those after a smaller one stay as they are. */
 enum { PLACE_BYTES = AXES * sizeof(int16_t) };
+_Static_assert((int)PLACE_BYTES >= (int)sizeof(uint32_t) &&
+                   offsetof(settings_t, address) + PLACE_BYTES <= sizeof(settings_t),
+               "of every setting, and within the settings after the last one");
 
 /* Copies a setting's bytes to where they are kept; true: they differ from the previous ones. */
 static bool keep(uint8_t *to, const uint8_t *from)

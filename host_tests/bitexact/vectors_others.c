@@ -9,7 +9,7 @@ enum { NOISE, ANGLES, ATAN2, ISQRT, GRAVITY, OTHER_COUNT };
 enum { ITEMS = 5 * VECTORS_BLOCK };
 
 static const char names[OTHER_COUNT][24] IN_FLASH = { "noise", "tilt_angles", "tilt_atan2_cdeg", "tilt_isqrt32",
-                                                      "tilt_gravity" };
+                                                      "tilt_gravity_plausible" };
 
 static noise_t noise;
 static tilt_t tilt;
@@ -77,7 +77,6 @@ static void gravity_item(bool any)
     int32_t y = any ? any_i32() : acceleration_q8();
     int32_t z = any ? any_i32() : acceleration_q8();
     vectors_output(tilt_gravity_plausible((const int32_t[]){ x, y, z }), 1);
-    vectors_output(tilt_gravity_possible((const int32_t[]){ x, y, z }), 1);
 }
 
 void other_path_item(uint8_t which, uint16_t index)

@@ -57,11 +57,11 @@ static bool has_limit(size_t contender)
     return parameter_named((filter_kind_t)contender, "ratemax") != FILTER_PARAMETERS_MAX;
 }
 
-/* The error that theory gives a linear filter; with a limit of the rate no more than that. */
+/* The error that theory gives a linear filter; with a limit of the rate between a third of that and all of it. */
 static bool as_theory(size_t contender, double own, double predicted)
 {
-    double above = own - predicted;
-    return above <= LINEAR_TOLERANCE * predicted && (has_limit(contender) || -above <= LINEAR_TOLERANCE * predicted);
+    double least = has_limit(contender) ? 1.0 / 3.0 : 1.0 - LINEAR_TOLERANCE;
+    return own <= (1.0 + LINEAR_TOLERANCE) * predicted && own >= least * predicted;
 }
 
 /* Scores of all contenders over the seeds. */

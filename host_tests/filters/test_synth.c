@@ -161,6 +161,20 @@ static void one_sample_turns_the_rate_up_to_its_limit(void)
     }
 }
 
+/* a1 = -1/2, b0 = 1/2: 100 after rest at 0 gives 50 and a rate of 8; bent, x_e would go on by 12, then by 10. */
+static void bent_predictions_are_limited_too(void)
+{
+    filter_t f;
+    filter_config_t config = filter_defaults(&filter_law_synth, 1000);
+    config.value[SYNTH_A1_Q16] = -32768;
+    config.value[SYNTH_B0_UQ16] = 32768;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth, &config));
+    filter_reset(&f, 0);
+    TEST_ASSERT_EQUAL_INT32(50L * 65536, filter_update(&f, 100));
+    TEST_ASSERT_EQUAL_INT32(62L * 65536, coast(&f));
+    TEST_ASSERT_EQUAL_INT32(70L * 65536, coast(&f));
+}
+
 /* Two bad samples among the first five change nothing: the start is their median. */
 static void outliers_in_the_start_cost_nothing(void)
 {
@@ -321,6 +335,7 @@ int main(void)
     RUN_TEST(start_ends_at_the_first_gain_that_is_not_above);
     RUN_TEST(descriptor_tells_the_binary_points);
     RUN_TEST(one_sample_turns_the_rate_up_to_its_limit);
+    RUN_TEST(bent_predictions_are_limited_too);
     RUN_TEST(outliers_in_the_start_cost_nothing);
     RUN_TEST(impulse_response_is_that_of_equation_7);
     RUN_TEST(coast_goes_on_along_the_line);

@@ -205,6 +205,20 @@ static void default_p0_is_that_of_the_median(void)
     }
 }
 
+/* ratemax 800 LSB/s at 100 Hz is 8 LSB a sample: b0 x 9 is below it, b0 x 15 is 10. */
+static void one_sample_turns_the_rate_up_to_its_limit(void)
+{
+    for (uint8_t k = 0; k < 2; k++) {
+        filter_t f;
+        filter_config_t config = filter_defaults(&filter_law_synth_opt, 1000);
+        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_opt, &config));
+        filter_reset(&f, 0);
+        int32_t x = filter_update(&f, (k == 0U) ? 9 : 15);
+        TEST_ASSERT_EQUAL_UINT8((k == 0U) ? 0 : FILTER_SATURATED, f.flags);
+        TEST_ASSERT_EQUAL_INT32((k == 0U) ? x : 8L * 65536, coast(&f) - x);
+    }
+}
+
 static void parameters_outside_are_refused(void)
 {
     filter_t f;
@@ -240,6 +254,7 @@ int main(void)
     RUN_TEST(schedule_goes_by_samples_seen);
     RUN_TEST(probe_tells_the_variance);
     RUN_TEST(default_p0_is_that_of_the_median);
+    RUN_TEST(one_sample_turns_the_rate_up_to_its_limit);
     RUN_TEST(parameters_outside_are_refused);
     return UNITY_END();
 }

@@ -1,7 +1,6 @@
 /*
- * What the pipeline looks at each second. The measured rate of a sensor handed to the filters: when, and that no row
- * shows it but by what the filters do; the pipeline alone, then the whole firmware on the host's HAL. And a gravity
- * that no ADXL345 reads.
+ * The measured rate of a sensor handed to the filters: when, and that no row shows it but by what the filters do. The
+ * pipeline alone, then the whole firmware on the host's HAL.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +9,6 @@
 #include "base/counters.h"
 #include "filter_list.h"
 #include "path/coast.h"
-#include "path/gravity.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support/board.h"
@@ -71,7 +69,7 @@ static void sample(int16_t y_lsb)
 static bool look(uint32_t period_us)
 {
     uint16_t before_dhz = pipeline_rate_dhz();
-    pipeline_each_second(period_us);
+    pipeline_retime(period_us);
     pipeline_finish();
     return pipeline_rate_dhz() != before_dhz;
 }
@@ -96,46 +94,6 @@ static bool second_of_turn(uint32_t period_us, double from, double step)
         sample_of((int16_t)lrint(lsb[0]), (int16_t)lrint(lsb[1]), (int16_t)lrint(lsb[2]));
     }
     return look(period_us);
-}
-
-/* 330 LSB are 1.29 g, 20 are 0.08: after ten seconds, of which none counts in which the board moved. */
-static void test_ten_seconds_at_rest_without_gravity_are_another_part(void)
-{
-    for (int moves = 0; moves < 2; moves++) {
-        begin(0);
-        for (int k = 0; k < LIMIT_OTHER_PART_S + 1 + moves; k++) { /* the first one brings the board to rest */
-            TEST_ASSERT_FALSE(gravity_absent());
-            bool moved = moves == 1 && k == 5;
-            for (int i = 0; i < 100; i++) {
-                sample_of((int16_t)(moved ? i / 4 : moves == 1 && k > 5 ? 25 : 0), 0, moves == 1 ? 20 : 330);
-            }
-            (void)look(10000);
-        }
-        TEST_ASSERT_TRUE(gravity_absent());
-    }
-    for (int k = 0; k < 2; k++) { /* one second brings it to rest again */
-        TEST_ASSERT_TRUE(gravity_absent());
-        (void)second(10000, 0, 0);
-    }
-    TEST_ASSERT_FALSE(gravity_absent());
-}
-
-static void test_another_part_is_forgotten_with_its_samples(void)
-{
-    begin(0);
-    for (int k = 0; k < LIMIT_OTHER_PART_S + 1; k++) {
-        for (int i = 0; i < 100; i++) {
-            sample_of(0, 0, 20);
-        }
-        (void)look(10000);
-    }
-    TEST_ASSERT_TRUE(gravity_absent());
-    pipeline_forget();
-    TEST_ASSERT_FALSE(gravity_absent());
-    for (int k = 0; k < 2 * LIMIT_OTHER_PART_S; k++) { /* no sample has come */
-        pipeline_each_second(10000);
-    }
-    TEST_ASSERT_FALSE(gravity_absent());
 }
 
 static void test_the_sixth_second_off_hands_the_rate_over_once(void)
@@ -325,8 +283,6 @@ static void test_the_firmware_hands_over_what_it_has_measured(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_ten_seconds_at_rest_without_gravity_are_another_part);
-    RUN_TEST(test_another_part_is_forgotten_with_its_samples);
     RUN_TEST(test_the_sixth_second_off_hands_the_rate_over_once);
     RUN_TEST(test_what_is_near_or_comes_back_changes_nothing);
     RUN_TEST(test_the_least_that_is_followed_at_each_rate);

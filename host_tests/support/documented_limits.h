@@ -140,8 +140,6 @@
     X(DEAF_MS, 250, "docs/faults.md: After {} ms the edges",                                                           \
       "hal/hal_drdy.h: HAL_DRDY_DEAF_TICKS = {1 - (-v * 1000 // 8192)} ",                                              \
       "test_driver_int1: test_nine_edges_in_a_tick_flicker")                                                           \
-    X(OTHER_PART_S, 10, "docs/faults.md: for {word} seconds at rest", "firmware/path/gravity.c: NO_GRAVITY_S = {} ",   \
-      "test_true_rate: test_ten_seconds_at_rest_without_gravity_are_another_part")                                     \
     X(WATCHDOG_MS, 250, "docs/faults.md: did not come by within {} ms",                                                \
       "hal/hal_watchdog.h: HAL_WATCHDOG_MS {}u | hal/avr/hal_watchdog.c: WDTO_{}MS",                                   \
       "test_health: test_a_driver_that_nobody_polls_is_not_healthy")                                                   \

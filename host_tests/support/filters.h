@@ -99,7 +99,7 @@ typedef struct {
 } envelope_facts_t;
 #endif
 
-/* The largest ratemax: no limit of its own up to 217 Hz, where the range of a sample is less. */
+/* The largest ratemax: up to 217 Hz above the bound of a rate, 4608 LSB a sample. */
 enum { RATE_UNLIMITED_LSB_S = 1000000 };
 
 /* What no descriptor tells of a law: support_law_NAME.c has them. */

@@ -33,20 +33,19 @@ typedef struct {
 /* What is wrong, in the order in which the driver finds it. Numbers are part of the protocol (docs/protocol.md). */
 typedef enum {
     ADXL345_FAULT_NONE = 0,
-    ADXL345_FAULT_NO_SENSOR = 1,      /* no ACK at 0x53 nor at 0x1D */
-    ADXL345_FAULT_WRONG_ID = 2,       /* a device answers, but DEVID is not 0xE5 */
-    ADXL345_FAULT_BUS = 3,            /* a transfer did not end in time on free lines, bus error, arbitration lost */
-    ADXL345_FAULT_READ_BACK = 4,      /* a register does not hold what was written */
-    ADXL345_FAULT_INT1_SILENT = 5,    /* data are ready in the sensor, but INT1 does not rise */
-    ADXL345_FAULT_NO_DATA = 6,        /* the sensor answers but has stopped measuring: it lost power or its registers */
-    ADXL345_FAULT_SCL_LOW = 7,        /* SCL is held low */
-    ADXL345_FAULT_SDA_LOW = 8,        /* SDA is held low, and 16 clocks have not freed it */
-    ADXL345_FAULT_INT1_STUCK = 9,     /* INT1 stays high without data */
-    ADXL345_FAULT_STUCK = 10,         /* the same values over and over */
-    ADXL345_FAULT_TORN = 11,          /* three readings in a row did not come from this sensor */
-    ADXL345_FAULT_TWO_SENSORS = 12,   /* an axis jumps between a value and its double: two sensors on one address */
-    ADXL345_FAULT_INT1_FLICKERS = 13, /* more edges than samples: nothing drives D2 */
-    ADXL345_FAULT_OTHER_PART = 14     /* at rest it does not read gravity: the firmware finds it, not the driver */
+    ADXL345_FAULT_NO_SENSOR = 1,     /* no ACK at 0x53 nor at 0x1D */
+    ADXL345_FAULT_WRONG_ID = 2,      /* a device answers, but DEVID is not 0xE5 */
+    ADXL345_FAULT_BUS = 3,           /* a transfer did not end in time on free lines, bus error, arbitration lost */
+    ADXL345_FAULT_READ_BACK = 4,     /* a register does not hold what was written */
+    ADXL345_FAULT_INT1_SILENT = 5,   /* data are ready in the sensor, but INT1 does not rise */
+    ADXL345_FAULT_NO_DATA = 6,       /* the sensor answers but has stopped measuring: it lost power or its registers */
+    ADXL345_FAULT_SCL_LOW = 7,       /* SCL is held low */
+    ADXL345_FAULT_SDA_LOW = 8,       /* SDA is held low, and 16 clocks have not freed it */
+    ADXL345_FAULT_INT1_STUCK = 9,    /* INT1 stays high without data */
+    ADXL345_FAULT_STUCK = 10,        /* the same values over and over */
+    ADXL345_FAULT_TORN = 11,         /* three readings in a row did not come from this sensor */
+    ADXL345_FAULT_TWO_SENSORS = 12,  /* an axis jumps between a value and its double: two sensors on one address */
+    ADXL345_FAULT_INT1_FLICKERS = 13 /* more edges than samples: nothing drives D2 */
 } adxl345_fault_t;
 
 typedef enum {

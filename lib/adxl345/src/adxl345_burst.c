@@ -181,9 +181,9 @@ bool adxl345_burst_register_holds(void)
 }
 
 /*
- * Stamp of a sample that was found waiting without an edge: one period after the previous one, but not before the
- * sensor was last seen empty, not longer ago than the sensor can hold it, and not in the future. The bound counts when
- * the reading of a full sensor is torn: its Overrun bit is lost with it, and its stamp is where the next one begins.
+ * Stamp of a sample that was found waiting without an edge: one period after the previous one, but not in the future,
+ * and not before the sensor was seen empty or, if it was not, longer ago than it can hold samples. That bound counts
+ * when the reading of a full sensor is torn: its Overrun bit is lost, and its stamp is where the next one begins.
  */
 static uint32_t waiting_since_us(const struct burst *b, uint32_t now_us)
 {

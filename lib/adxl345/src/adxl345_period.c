@@ -31,7 +31,7 @@ void adxl345_period_start(uint16_t half_us)
     p->measured = false;
 }
 
-/* Within an eighth of the nominal period. */
+/* Within an eighth of the nominal period; a shorter step wraps and is far too long. */
 static bool near_nominal(const struct period *p, uint32_t step_us)
 {
     uint16_t half_us = p->half_us;
@@ -39,8 +39,8 @@ static bool near_nominal(const struct period *p, uint32_t step_us)
 }
 
 /*
- * The mean of STEPS consecutive steps between exact stamps, each near the nominal period. It costs less
- * time per sample than a running mean, and does not settle half a microsecond off the true value.
+ * The mean of STEPS consecutive steps between exact stamps, each near the nominal period. It costs less time per sample
+ * than a running mean, and does not settle half a microsecond off the true value.
  */
 void adxl345_period_sample(uint32_t t_us, bool exact)
 {

@@ -10,11 +10,15 @@
  * no measurement would reach the prediction. Not robust: every outlier passes with the gain b0. With a1 <= 0 the
  * variance of the estimate cannot fall below R / 2, whatever b0 (notes on the papers: synthesised-filter).
  *
- * Parameters a1 (0: a straight line through two estimates), b0, r (for start and probe), ratemax (not in the papers;
- * 1000000: as published up to 217 Hz). Together a1 and b0 must lie
- * inside the stability region: 1 + 2 a1 (1 - b0) > 0, which is exact within their ranges. The papers' b0 > -a1 - 0.3 is
- * only sufficient. Paper 001's preset is a1 = -0.3, b0 = 0.1 (-19661, 6554): it overshoots a step by 69 % and hardly
- * smooths (variance 0.82 R).
+ * Parameters a1 (0: a straight line through two estimates), b0, r (for start and probe), ratemax. Together a1 and b0
+ * must lie inside the stability region: 1 + 2 a1 (1 - b0) > 0, which is exact within their ranges. The papers'
+ * b0 > -a1 - 0.3 is only sufficient. Paper 001's preset is a1 = -0.3, b0 = 0.1 (-19661, 6554): it overshoots a step by
+ * 69 % and hardly smooths (variance 0.82 R).
+ *
+ * ratemax is not in the papers: without it one outlier changes the rate of every prediction after it. At its largest
+ * value v is limited to 4608 LSB a sample up to 217 Hz, to less above: only steps of over 10 g reach that. The default
+ * is 1 LSB a sample at 800 Hz, where the noise of v is more than that: it is limited too, and x varies less than the
+ * closed forms and the probe say.
  *
  * Scaling:
  *   a1, b0   UQ0.16 magnitudes, within 2^-17 of the configured ones

@@ -193,27 +193,14 @@ static uint16_t magnitude_q6(int32_t a_q8)
     return (a_q6 > 0x8000UL) ? 0x8000U : (uint16_t)a_q6;
 }
 
-/* |a|^2 in UQ20.12 LSB^2. */
-static MACHINE_APART uint32_t square_q12(const int32_t a_q8[3])
+bool tilt_gravity_plausible(const int32_t a_q8[3])
 {
+    const uint32_t lowest_q12 = 193944617UL;  /* (0.85 g * 256 LSB/g * 64)^2 = 13926.4^2 */
+    const uint32_t highest_q12 = 355005890UL; /* (1.15 g * 256 LSB/g * 64)^2 = 18841.6^2 */
     uint32_t sum_q12 = 0;
     for (uint8_t axis = 0; axis < 3U; axis++) {
         uint16_t magnitude = magnitude_q6(a_q8[axis]);
         sum_q12 += (uint32_t)magnitude * magnitude; /* <= 3 x 2^30 */
     }
-    return sum_q12;
-}
-
-bool tilt_gravity_plausible(const int32_t a_q8[3])
-{
-    const uint32_t lowest_q12 = 193944617UL;  /* (0.85 g * 256 LSB/g * 64)^2 = 13926.4^2 */
-    const uint32_t highest_q12 = 355005890UL; /* (1.15 g * 256 LSB/g * 64)^2 = 18841.6^2 */
-    return square_q12(a_q8) - lowest_q12 <= highest_q12 - lowest_q12;
-}
-
-bool tilt_gravity_possible(const int32_t a_q8[3])
-{
-    const uint32_t lowest_q12 = 171798692UL;  /* (0.8 g * 256 LSB/g * 64)^2 = 13107.2^2 */
-    const uint32_t highest_q12 = 439804651UL; /* (1.28 g * 256 LSB/g * 64)^2 = 20971.52^2 */
-    return square_q12(a_q8) - lowest_q12 <= highest_q12 - lowest_q12;
+    return sum_q12 >= lowest_q12 && sum_q12 <= highest_q12;
 }

@@ -43,12 +43,6 @@ uint16_t tilt_isqrt32(uint32_t v);
  */
 bool tilt_gravity_plausible(const int32_t a_q8[3]);
 
-/*
- * The same for 0.8..1.28 g: what an ADXL345 at rest can read with the offsets and the sensitivity of its data sheet.
- * False: it needs six positions (calibration_six.h), or is another part.
- */
-bool tilt_gravity_possible(const int32_t a_q8[3]);
-
 #ifdef __cplusplus
 }
 #endif
