@@ -22,8 +22,8 @@ filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_c
         filter_tracker_clear(f, sizeof *f);
         f->law = law;
         f->rate_dhz = config->rate_dhz;
-        f->flags = FILTER_WARMING_UP;
         LAW_OF(f, set_up)(f, config);
+        filter_restart(f);
     }
     return answer;
 }
