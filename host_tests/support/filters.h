@@ -116,7 +116,7 @@ typedef struct {
     bool locks_out;            /* as published: after outliers in runs it may not come back to a motion */
     bool loses_motion;         /* or may be off it while they last */
     bool stays_away;           /* not back within 400 samples after a jump of thousands of LSB */
-    bool synthesised;          /* its rate is the last step, without a limit of its own */
+    bool synthesised;          /* its rate is a step between two estimates: up to twice their bound */
 #ifndef __AVR__
     envelope_facts_t envelope;
 #endif
