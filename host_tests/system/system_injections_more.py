@@ -104,6 +104,16 @@ def starved_main_loop_stands_still_while_interrupts_go_on():
 
 
 @test
+def interrupts_of_a_starved_main_loop_wait_no_longer_than_others():
+    for seed in (1, 2, 3):
+        rows, _, _, stats = injected("starve-800", "p:0.1:starve:1.3", max_ms=4000,
+                                     options=("--rate", 800, "--baud", 500000, "--loop", "--seed", seed))
+        waits = {name: stats[f"isr_{name}_worst_latency"] for name in ("int0", "timer1_compa", "twi")}
+        assert max(waits.values()) <= 248, waits
+        assert len(rows) > 1000 and not [row for row in rows if row[-1] & 2], "a sample was called missing"
+
+
+@test
 def main_loop_starved_for_longer_than_the_watchdog_is_reset_once():
     rows, notes, _, stats = simrun("inject-starved", REST, "--fault", "1000ms:starve:2000", "--expect-resets", "1", "--max-ms", "3000")
     assert stats["resets"] == 1 and sum(n.startswith("# reset: watchdog") for n in notes) == 1, notes

@@ -12,9 +12,25 @@ static bool falls_asleep(const avr_t *avr)
     return mcu_opcode_at(avr->pc) == OPCODE_SLEEP;
 }
 
+/* What is pending already would not end a sleep of simavr before its next timer. True: its handler runs. */
+static bool serves_pending(avr_t *avr)
+{
+    uint64_t began = avr->cycle;
+    while (avr->interrupt_state != 0 && !times_in_interrupt()) {
+        avr_service_interrupts(avr);
+    }
+    if (avr->cycle != began) {
+        avr_cycle_timer_process(avr); /* the entry took time */
+    }
+    return times_in_interrupt();
+}
+
 static void run_handlers_only(avr_t *avr)
 {
     if (avr->state == cpu_Running && !times_in_interrupt() && avr->sreg[S_I] && !falls_asleep(avr)) {
+        if (serves_pending(avr)) {
+            return;
+        }
         avr->state = cpu_Sleeping;
     }
     run_before(avr);
