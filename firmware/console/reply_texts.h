@@ -166,7 +166,7 @@ enum say {
       ", lines refused " V_COUNT V_LINE \
       "lost " V_COUNT ", late " V_COUNT ", drained " V_COUNT ", stuck " V_COUNT ", restarts " V_COUNT V_LINE \
       "not acknowledged " V_COUNT ", arbitration lost " V_COUNT ", bus errors " V_COUNT ", timeouts " V_COUNT V_LINE \
-      "readings torn " V_COUNT ", empty " V_COUNT ", overruns " V_COUNT V_LINE \
+      "readings torn " V_COUNT ", empty " V_COUNT ", overruns " V_COUNT ", storms " V_COUNT V_LINE \
       "reset: " V_CAUSE) \
     X(LISTING, V_LISTED V_AGAIN) \
     X(SETTING, V_SETTING V_SETTING_NOTE) \

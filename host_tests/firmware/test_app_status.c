@@ -120,7 +120,7 @@ static void test_a_calm_sensor_counts_nothing(void)
     static const char *const names[] = { "clipped ",       "dropped ",  "lines refused ",    "lost ",
                                          "drained ",       "stuck ",    "restarts ",         "empty ",
                                          "readings torn ", "overruns ", "not acknowledged ", "arbitration lost ",
-                                         "bus errors ",    "timeouts ", "reacquired " };
+                                         "bus errors ",    "timeouts ", "reacquired ",       "storms " };
     start(NULL, NULL);
     size_t latched = board.latched_count;
     board_run_ms(8000);

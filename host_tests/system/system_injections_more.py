@@ -186,6 +186,15 @@ def int1_that_flickers_is_not_heard_and_told():
             assert_told(name, flickering(name, f"2000ms:storm:{hz}:2000", rate))
 
 
+@test
+def storm_has_one_number_whatever_its_phase():
+    for tenth in range(10):
+        options = ("--rate", 400, "--every", 8, "--baud", 500000, "--cmd", "3000:status")
+        notes = injected("storm-phase", f"1500.{tenth}ms:storm:200000:300", max_ms=3500, options=options)[1]
+        lines = [note.split(":")[0] for note in notes if note.startswith("# fault")]
+        assert lines == ["# fault 13", "# fault 13 over"] and any(note.endswith(", storms 1") for note in notes), (tenth, notes)
+
+
 def by_the_clock(name, rate, ppm, *faults):
     """A sensor that is read without INT1: no sample is lost, none is stale, whatever its clock."""
     every = 4 if rate == 800 else 1

@@ -130,11 +130,12 @@ typedef struct {
 } adxl345_counters_t;
 void adxl345_counters(adxl345_counters_t *out);
 
-/* Readings that were not new samples, saturating. None of them was delivered. */
+/* Readings that were not new samples, saturating. None of them was delivered. And what INT1 did. */
 typedef struct {
     uint16_t failed;   /* torn, shifted, or no device */
     uint16_t empty;    /* INT1 was high, but the sensor had no new sample */
     uint16_t overruns; /* readings from a FIFO that had filled up: samples were lost */
+    uint16_t storms;   /* times that INT1 began to flicker */
 } adxl345_readings_t;
 void adxl345_readings(adxl345_readings_t *out);
 

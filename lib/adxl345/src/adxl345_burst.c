@@ -212,14 +212,14 @@ void adxl345_burst_read(void)
     uint32_t now_us = hal_time_us();
     entry->sample.t_us = waiting_since_us(b, now_us);
     entry->exact = false;
-    b->by_clock = true;
+    b->int1 = hal_drdy_flickers() ? ADXL345_FAULT_INT1_FLICKERS : ADXL345_FAULT_INT1_SILENT;
     hal_irq_state_t state = hal_irq_save();
     uint8_t waiting = b->edge_waiting;
     uint32_t edge_us = b->edge_us;
     b->edge_waiting = 0;
     hal_irq_restore(state);
     if (hal_drdy_high()) { /* an edge whose level has gone belongs to no sample */
-        b->by_clock = false;
+        b->int1 = ADXL345_FAULT_NONE;
         if (waiting) {
             entry->exact = true;
             entry->sample.t_us = edge_us;
@@ -265,14 +265,14 @@ static reading_t judge(struct burst *b, burst_entry_t *entry)
     reading_t verdict = adxl345_integrity_judge(b->bus.rx, entry->sample.lsb,
                                                 entry_at((uint8_t)(b->head - 1u))->sample.lsb);
     b->verdict = (uint8_t)verdict;
-    if (verdict == READING_EMPTY && !b->by_clock) {
+    if (verdict == READING_EMPTY && b->int1 == ADXL345_FAULT_NONE) {
         adxl345_integrity_int1_lied();
     }
     if (verdict != READING_GOOD) {
         return verdict;
     }
     if (b->edge_waiting) {
-        b->by_clock = false; /* INT1 rose in the meantime */
+        b->int1 = ADXL345_FAULT_NONE; /* INT1 rose in the meantime */
     }
     if (b->bus.rx[READING_FIFO_STATUS] >= 2u) {
         restamp(b, entry);
@@ -292,7 +292,7 @@ static MACHINE_APART reading_t judge_ended(void)
     if (b->by_edge) {
         entry->sample.t_us = b->begun_us;
         entry->exact = true;
-        b->by_clock = false;
+        b->int1 = ADXL345_FAULT_NONE;
     }
     if (b->bus.state == I2C_BUS_OK) {
         verdict = judge(b, entry);
@@ -325,9 +325,9 @@ bool adxl345_sample_waits(void)
     return hal_drdy_high() && burst.mode == BURST_READ && (burst.verdict != READING_EMPTY || burst.edge_waiting);
 }
 
-bool adxl345_burst_by_clock(void)
+uint8_t adxl345_burst_int1(void)
 {
-    return burst.by_clock;
+    return burst.int1;
 }
 
 MACHINE_APART uint32_t adxl345_burst_begun_us(void)

@@ -61,10 +61,10 @@ reading_t adxl345_burst_judge(void);
 bool adxl345_burst_running(void);
 
 /*
- * The newest burst was started with INT1 low, and INT1 has not risen since. If an edge may have started another one it
- * is only a hint.
+ * What is wrong with INT1 (adxl345_fault_t): it was low or flickered when main started the newest burst, and has not
+ * risen since. If an edge may have started another one it is only a hint.
  */
-bool adxl345_burst_by_clock(void);
+uint8_t adxl345_burst_int1(void);
 
 /* Start of the newest burst, and stamp of the newest sample; until the first one, the time to count from. */
 uint32_t adxl345_burst_begun_us(void);

@@ -18,7 +18,7 @@ struct burst {
     uint8_t failed_state;                      /* i2c_bus_state_t of the newest failed burst */
     uint32_t last_us;                          /* stamp of the newest sample that left the sensor, delivered or cut */
     bool last_known;                           /* last_us belongs to this run of the sensor */
-    bool by_clock;                             /* started by main with INT1 low, and no edge came */
+    uint8_t int1;                              /* adxl345_fault_t of INT1: why main started it and no edge came */
     uint8_t verdict;                           /* reading_t of the newest burst that did not fail on the bus */
     burst_entry_t queue[ADXL345_QUEUE_LENGTH]; /* the entry at head has the stamp of the sample being read */
 };

@@ -44,7 +44,8 @@ void adxl345_counters(adxl345_counters_t *out)
 
 void adxl345_readings(adxl345_readings_t *out)
 {
-    *out = (adxl345_readings_t){ counters[COUNTER_FAILED], counters[COUNTER_EMPTY], counters[COUNTER_OVERRUNS] };
+    *out = (adxl345_readings_t){ counters[COUNTER_FAILED], counters[COUNTER_EMPTY], counters[COUNTER_OVERRUNS],
+                                 counters[COUNTER_STORMS] };
 }
 
 uint16_t adxl345_count(uint8_t at)

@@ -19,6 +19,7 @@ typedef enum {
     COUNTER_FAILED,
     COUNTER_EMPTY,
     COUNTER_OVERRUNS,
+    COUNTER_STORMS,
     COUNTERS
 } counter_t;
 

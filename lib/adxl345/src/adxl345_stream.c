@@ -68,10 +68,11 @@ static void sample_arrived(adxl345_driver_t *d)
     d->after_fault = false;
     d->first_sample_seen = true;
     d->back_off = BACK_OFF_MIN;
-    d->fault = ADXL345_FAULT_NONE;
-    if (adxl345_burst_by_clock()) {
-        d->fault = hal_drdy_flickers() ? ADXL345_FAULT_INT1_FLICKERS : ADXL345_FAULT_INT1_SILENT;
+    uint8_t fault = adxl345_burst_int1();
+    if (fault == ADXL345_FAULT_INT1_FLICKERS && fault != d->fault) {
+        adxl345_counters_add(COUNTER_STORMS);
     }
+    d->fault = fault;
 }
 
 /* A burst, or the STOP after one, is on the bus: it may hang. */
