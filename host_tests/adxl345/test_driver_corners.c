@@ -286,15 +286,30 @@ static void test_a_stuck_int1_that_flickers_is_stuck_no_more(void)
         adxl345_integrity_int1_lied();
     }
     TEST_ASSERT_TRUE(adxl345_integrity_int1_stuck());
-    for (unsigned i = 0; i < LIMIT_EDGES; i++) {
-        hal_host_drdy_edge();
-    }
+    rig_edges(LIMIT_EDGES);
     TEST_ASSERT_TRUE(hal_drdy_flickers());
     rig_run_ms(25);
     TEST_ASSERT_FALSE(adxl345_integrity_int1_stuck());
     TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_FLICKERS, adxl345_fault());
     rig.limit_us = 20000; /* by the clock */
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(300));
+}
+
+/* After a stop an edge begins nothing; one that came then is not the time of the first sample of the next start. */
+static void test_an_edge_while_stopped_is_nobodys(void)
+{
+    stream_for_ms(300);
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(50));
+    hal_host_faults.int1_high = true;
+    hal_host_drdy_handler();
+    TEST_ASSERT_FALSE(adxl345_burst_running());
+    hal_host_faults.int1_high = false;
+    rig_run_ms(200);
+    hal_host_faults.int1_cut = true; /* the first sample is read by the clock, with others that give its age */
+    rig.limit_us = 10000 / 2 + 1000;
+    size_t before = rig.taken_count;
+    adxl345_start(&at_100_hz);
+    rig_until_taken(before + 1);
 }
 
 int main(void)
@@ -310,5 +325,6 @@ int main(void)
     RUN_TEST(test_the_queue_holds_seven_samples);
     RUN_TEST(test_one_access_at_a_time);
     RUN_TEST(test_a_stuck_int1_that_flickers_is_stuck_no_more);
+    RUN_TEST(test_an_edge_while_stopped_is_nobodys);
     return UNITY_END();
 }

@@ -249,14 +249,6 @@ static void test_edges_without_a_level_are_noise(void)
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
 }
 
-/* Within one pass of main. */
-static void edges(unsigned count)
-{
-    while (count-- != 0) {
-        hal_host_drdy_edge();
-    }
-}
-
 static void run_until_tick(void)
 {
     for (uint32_t before = hal_time_us() / HAL_TICK_US; hal_time_us() / HAL_TICK_US == before;) {
@@ -278,11 +270,11 @@ static void test_nine_edges_in_a_tick_flicker(void)
     rig_until_pause();
     for (unsigned ticks = 0; ticks < 2; ticks++) {
         run_until_tick();
-        edges(LIMIT_EDGES - 1);
+        rig_edges(LIMIT_EDGES - 1);
         TEST_ASSERT_FALSE(hal_drdy_flickers());
     }
     run_until_tick();
-    edges(LIMIT_EDGES);
+    rig_edges(LIMIT_EDGES);
     for (unsigned ticks = 1; ticks <= DEAF_TICKS; ticks++) {
         TEST_ASSERT_TRUE(hal_drdy_flickers());
         run_until_tick();
@@ -298,12 +290,12 @@ static void test_eight_edges_are_too_many_to_be_believed_again(void)
     for (unsigned count = LIMIT_EDGES_AGAIN - 1; count <= LIMIT_EDGES_AGAIN + 1; count++) {
         stream_for_ms(300);
         run_until_tick();
-        edges(LIMIT_EDGES);
+        rig_edges(LIMIT_EDGES);
         for (unsigned ticks = 1; ticks < DEAF_TICKS; ticks++) {
             run_until_tick();
         }
         hal_host_faults.int1_cut = true; /* no edge of a sample is among them */
-        edges(count);
+        rig_edges(count);
         run_until_tick();
         TEST_ASSERT_EQUAL(count >= LIMIT_EDGES_AGAIN, hal_drdy_flickers());
     }
@@ -324,7 +316,7 @@ static void test_an_int1_that_flickers_is_not_heard(void)
         for (unsigned pass = 0; hal_host_now_ms() < begun_ms + 1000 + 10 * period_ms; pass++) {
             hal_host_faults.int1_high = pass % 2 != 0;
             hal_host_faults.int1_cut = !hal_host_faults.int1_high;
-            edges(5);
+            rig_edges(5);
             rig_pass();
             if (hal_host_now_ms() > begun_ms + 10 + 3 * period_ms) {
                 TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_FLICKERS, adxl345_fault());

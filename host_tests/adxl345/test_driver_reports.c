@@ -230,9 +230,7 @@ static void fail_bursts(uint8_t status, unsigned times)
 static void storms(unsigned times)
 {
     for (; times != 0; times--) {
-        for (unsigned edges = 0; edges < LIMIT_EDGES; edges++) {
-            hal_host_drdy_edge();
-        }
+        rig_edges(LIMIT_EDGES);
         TEST_ASSERT_TRUE(hal_drdy_flickers());
         rig_run_ms(400);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
@@ -270,7 +268,7 @@ static void count_everything(void)
     rig_run_ms(500);
 }
 
-/* Each counter has its place, the driver's first, then those of the readings: the eleven are not equal and none is 0. */
+/* Each counter has its place, the driver's first, then those of the readings: the eleven differ and none is 0. */
 static void test_counters_by_their_places(void)
 {
     count_everything();
@@ -291,14 +289,6 @@ static void test_counters_by_their_places(void)
     }
 }
 
-static void run_until_taken(size_t count)
-{
-    for (double end_ms = hal_host_now_ms() + 1000.0; rig.taken_count < count;) {
-        TEST_ASSERT_TRUE(hal_host_now_ms() < end_ms);
-        rig_pass();
-    }
-}
-
 /* Samples 20 to 39 are equal: the tenth and those after it are stuck, 11, and each is marked once. */
 static void test_stuck_samples_are_marked_and_counted(void)
 {
@@ -310,7 +300,7 @@ static void test_stuck_samples_are_marked_and_counted(void)
     (void)adxl345_marks();
     unsigned equal = 0;
     for (size_t taken = 1; taken < 60; taken++) {
-        run_until_taken(taken);
+        rig_until_taken(taken);
         equal = rig.last_x == 20 ? equal + 1 : 0;
         bool stuck = equal >= 10;
         TEST_ASSERT_EQUAL_HEX8(stuck ? ADXL345_MARK_STUCK : 0, adxl345_marks());
@@ -330,29 +320,12 @@ static void test_doubled_samples_are_two_sensors(void)
     unsigned jumps = 0;
     int was = 200;
     for (size_t taken = 1; taken < 40; taken++) {
-        run_until_taken(taken);
+        rig_until_taken(taken);
         jumps += (rig.last_x >= 400) != (was >= 400);
         was = rig.last_x;
         TEST_ASSERT_EQUAL(jumps >= 8 ? ADXL345_FAULT_TWO_SENSORS : ADXL345_FAULT_NONE, adxl345_fault());
     }
     TEST_ASSERT_TRUE(jumps > 8);
-}
-
-/* After a stop an edge begins nothing; one that came then is not the time of the first sample of the next start. */
-static void test_an_edge_while_stopped_is_nobodys(void)
-{
-    stream_for_ms(300);
-    TEST_ASSERT_EQUAL_size_t(0, rig_lost(50));
-    hal_host_faults.int1_high = true;
-    hal_host_drdy_handler();
-    TEST_ASSERT_FALSE(adxl345_burst_running());
-    hal_host_faults.int1_high = false;
-    rig_run_ms(200);
-    hal_host_faults.int1_cut = true; /* the first sample is read by the clock, with others that give its age */
-    rig.limit_us = 10000 / 2 + 1000;
-    size_t before = rig.taken_count;
-    adxl345_start(&at_100_hz);
-    run_until_taken(before + 1);
 }
 
 /* The sensor paused and is asked why; the edge of the sample that comes just then is no time, but INT1 has risen. */
@@ -366,7 +339,7 @@ static void test_an_edge_while_the_sensor_is_asked_says_that_int1_is_well(void)
     size_t before = rig.taken_count;
     rig.limit_us = 4000; /* a period after the one before: it comes a quarter late, and the clock asks just then */
     TEST_ASSERT_TRUE(adxl345_model_tick(&hal_host_sensor, rig.stream.rows[3000].lsb));
-    run_until_taken(before + 1);
+    rig_until_taken(before + 1);
     TEST_ASSERT_EQUAL_INT(3000, rig.last_x);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
@@ -407,7 +380,6 @@ int main(void)
     RUN_TEST(test_counters_by_their_places);
     RUN_TEST(test_stuck_samples_are_marked_and_counted);
     RUN_TEST(test_doubled_samples_are_two_sensors);
-    RUN_TEST(test_an_edge_while_stopped_is_nobodys);
     RUN_TEST(test_an_edge_while_the_sensor_is_asked_says_that_int1_is_well);
     RUN_TEST(test_a_silent_sensor_is_asked_after_five_quarters_of_a_period);
     return UNITY_END();

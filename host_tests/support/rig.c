@@ -141,6 +141,21 @@ void rig_until_pause(void)
     }
 }
 
+void rig_edges(unsigned count)
+{
+    while (count-- != 0) {
+        hal_host_drdy_edge();
+    }
+}
+
+void rig_until_taken(size_t count)
+{
+    for (double end_ms = hal_host_now_ms() + 1000.0; rig.taken_count < count;) {
+        TEST_ASSERT_TRUE(hal_host_now_ms() < end_ms);
+        rig_pass();
+    }
+}
+
 void rig_until_asked(void)
 {
     hal_host_faults.int1_cut = true;

@@ -62,6 +62,12 @@ void rig_until_burst(void);
 /* No burst runs and none is due for a while: the next event is the START of the next sample. */
 void rig_until_pause(void);
 
+/* So many edges on D2 within one pass of main. */
+void rig_edges(unsigned count);
+
+/* Passes until so many samples have been taken; a second at most. */
+void rig_until_taken(size_t count);
+
 /* INT1 is cut; passes until a burst that asks the sensor all the same has just been put on the bus. */
 void rig_until_asked(void);
 
