@@ -9,6 +9,9 @@
 
 #define LONG_STEP_US UINT32_C(100000)
 
+/* So much of an outage is counted before it is over, because times wrap after 71 minutes; a part of a sample is not. */
+#define LONG_OUTAGE_US (UINT32_C(1) << 30)
+
 typedef enum {
     STATE_WAITING, /* for the first sample; no row is out yet */
     STATE_RUNNING,
@@ -18,7 +21,7 @@ typedef enum {
 static struct coast {
     uint32_t next_us; /* time of the next sample */
     uint32_t due_us;  /* when it counts as missing */
-    uint32_t lost_us; /* COASTING: due_us as it was after the newest sample that came, or for the first row */
+    uint32_t lost_us; /* COASTING: due_us of the first missing sample that is not counted yet */
     uint8_t state;    /* state_t */
 } coast;
 
@@ -61,26 +64,39 @@ bool coast_over(uint32_t period_us, bool sample)
     }
     if (c->state != STATE_COASTING) {
         c->state = STATE_COASTING;
-        c->lost_us = c->due_us;
+        c->lost_us = c->next_us + (period_us >> 1);
+    }
+    if ((uint8_t)((c->due_us - c->lost_us) >> 24) == LONG_OUTAGE_US >> 24) { /* met: 2^24 us are many steps */
+        c->lost_us += LONG_OUTAGE_US;
+        count_lost(LONG_OUTAGE_US / period_us);
     }
     pipeline_coast(c->next_us);
     expect(c->next_us + (silence_long() ? LONG_STEP_US : period_us), period_us);
     return true;
 }
 
-bool coast_sample(uint32_t t_us, uint32_t period_us)
+/* Counts what is missing before a sample that has come; none if it is older than the sample before the outage. */
+static void count_missing(struct coast *c, uint32_t t_us, uint32_t period_us)
 {
-    struct coast *c = here();
-    if (c->state != STATE_WAITING && hal_time_reached(pipeline_newest_us(), t_us)) {
-        c->lost_us = t_us + period_us + (period_us >> 1);
-        count(COUNT_LATE);
-        return false;
-    }
-    if (c->state == STATE_COASTING) { /* t_us is at most two periods before lost_us, or up to 71 minutes late */
-        uint32_t periods = (t_us - c->lost_us + 2u * period_us) / period_us;
+    int32_t since_us = (int32_t)(t_us - c->lost_us + 2u * period_us);
+    if (since_us >= 0) {
+        uint32_t periods = (uint32_t)since_us / period_us;
         if (periods > 1u) {
             count_lost(periods - 1u);
         }
+    }
+}
+
+bool coast_sample(uint32_t t_us, uint32_t period_us)
+{
+    struct coast *c = here();
+    if (c->state == STATE_COASTING) {
+        count_missing(c, t_us, period_us);
+        c->lost_us = t_us + period_us + (period_us >> 1);
+    }
+    if (c->state != STATE_WAITING && hal_time_reached(pipeline_newest_us(), t_us)) {
+        count(COUNT_LATE);
+        return false;
     }
     c->state = STATE_RUNNING;
     expect(t_us + period_us, period_us);
