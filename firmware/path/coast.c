@@ -21,7 +21,7 @@ typedef enum {
 static struct coast {
     uint32_t next_us; /* time of the next sample */
     uint32_t due_us;  /* when it counts as missing */
-    uint32_t lost_us; /* COASTING: due_us of the first missing sample that is not counted yet */
+    uint32_t from_us; /* COASTING: half a period after the newest sample that came or is counted */
     uint8_t state;    /* state_t */
 } coast;
 
@@ -64,10 +64,10 @@ bool coast_over(uint32_t period_us, bool sample)
     }
     if (c->state != STATE_COASTING) {
         c->state = STATE_COASTING;
-        c->lost_us = c->next_us + (period_us >> 1);
+        c->from_us = c->next_us - (period_us >> 1);
     }
-    if ((uint8_t)((c->due_us - c->lost_us) >> 24) == LONG_OUTAGE_US >> 24) { /* met: 2^24 us are many steps */
-        c->lost_us += LONG_OUTAGE_US;
+    if ((uint8_t)((c->due_us - c->from_us) >> 24) == LONG_OUTAGE_US >> 24) { /* met: 2^24 us are many steps */
+        c->from_us += LONG_OUTAGE_US;
         count_lost(LONG_OUTAGE_US / period_us);
     }
     pipeline_coast(c->next_us);
@@ -78,12 +78,9 @@ bool coast_over(uint32_t period_us, bool sample)
 /* Counts what is missing before a sample that has come; none if it is older than the sample before the outage. */
 static void count_missing(struct coast *c, uint32_t t_us, uint32_t period_us)
 {
-    int32_t since_us = (int32_t)(t_us - c->lost_us + 2u * period_us);
-    if (since_us >= 0) {
-        uint32_t periods = (uint32_t)since_us / period_us;
-        if (periods > 1u) {
-            count_lost(periods - 1u);
-        }
+    int32_t since_us = (int32_t)(t_us - c->from_us);
+    if (since_us > 0) {
+        count_lost((uint32_t)since_us / period_us);
     }
 }
 
@@ -92,7 +89,7 @@ bool coast_sample(uint32_t t_us, uint32_t period_us)
     struct coast *c = here();
     if (c->state == STATE_COASTING) {
         count_missing(c, t_us, period_us);
-        c->lost_us = t_us + period_us + (period_us >> 1);
+        c->from_us = t_us + (period_us >> 1);
     }
     if (c->state != STATE_WAITING && hal_time_reached(pipeline_newest_us(), t_us)) {
         count(COUNT_LATE);
