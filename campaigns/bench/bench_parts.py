@@ -51,7 +51,7 @@ PARTS = {
 }
 OWN = {
     "glue per axis": "filter_axes tilt_axis_update tilt_at_rail flags_of",
-    "glue per sample": "pipeline_work begin_next pipeline_sample count_sample hung silence_* pipeline_retime",
+    "glue per sample": "pipeline_work begin_next pipeline_sample count_sample hung silence_* pipeline_second",
     "row: rest": "write_row settings_every_in_force rows_sample rows_at_once newest_time pipeline_row with_state find_angles pipeline_row_done write",
     "main loop": "main app_pass serve work_piece filter_samples next_sample pass_* control_follow "
                  "control_line_waits measure_asks measure_borrows store_busy",

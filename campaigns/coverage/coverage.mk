@@ -1,7 +1,7 @@
 # Coverage of lib by the unit tests (gcov; built apart, without sanitizers) and of the AVR binary by the system tests.
 C := $(B)/coverage
 # the supervision of sensor and stages is judged beside lib, and the navigation image's link (campaigns/coverage/nav_lib_coverage.mk)
-SUPERVISION   := $(wildcard $(addprefix firmware/*/,sensor_watch.c health.c pipeline.c coast.c supervisor.c))
+SUPERVISION   := $(wildcard $(addprefix firmware/*/,sensor_watch.c health.c pipeline.c coast.c gravity.c supervisor.c))
 # test_nav_flight, a minute of flights, runs no line of nav/lib that the short ones leave
 COVERAGE_SRC   := $(filter-out nav/tests/test_nav_flight.c,$(TEST_SRC))
 COVERAGE_TESTS := $(addprefix $(C)/,$(basename $(notdir $(COVERAGE_SRC))))

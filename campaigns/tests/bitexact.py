@@ -27,7 +27,7 @@ STOPPED = 8          # simrun: the program slept with interrupts off
 BLOCK = 200          # VECTORS_BLOCK of vectors.h
 SHOWN = 3            # differences shown in detail
 FIRMWARE = [f"firmware/{name}.c" for name in (
-    "base/format", "base/text", "base/pass", "base/counters", "output/rows", "path/pipeline", "path/coast", "path/silence",
+    "base/format", "base/text", "base/pass", "base/counters", "output/rows", "path/pipeline", "path/coast", "path/gravity", "path/silence",
     "settings/settings", "settings/settings_words", "base/choice")]
 HEADERS = ["lib", "firmware", "hal", "host_tests"]
 SANITIZE = "-O1 -fsanitize=address,undefined -fno-sanitize-recover=all"

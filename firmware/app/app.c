@@ -209,7 +209,7 @@ static bool filter_samples(void)
     }
     if (loop.look_at_rate) {
         loop.look_at_rate = false;
-        pipeline_retime(adxl345_period_us());
+        pipeline_second(adxl345_period_us());
         return true;
     }
     return control_follow(loop.pass_us) || next_sample();

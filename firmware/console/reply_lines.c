@@ -10,6 +10,7 @@
 #include "console/reply_texts.h"
 #include "control/calibrate.h"
 #include "control/measure.h"
+#include "control/sensor_watch.h"
 #include "machine.h"
 #include "settings/settings.h"
 #include "settings/settings_table.h"
@@ -69,7 +70,7 @@ static uint8_t text_of(uint8_t kind)
 {
     switch (kind) {
     case NOTICE_STATUS:
-        said.subject = (uint8_t)adxl345_fault();
+        said.subject = sensor_watch_fault();
         said.counters_out = 0;
         break;
     case NOTICE_HELP:

@@ -22,7 +22,7 @@
 #include "settings/settings_table.h"
 
 _Static_assert(TEXT_KEPT_CALIBRATION - TEXT_KEPT_DAMAGED == KEPT_CALIBRATION - KEPT_DAMAGED, "words for what was kept");
-_Static_assert(TEXT_INT1_FLICKERS - TEXT_NO_SENSOR == ADXL345_FAULT_INT1_FLICKERS - 1, "words for each fault");
+_Static_assert(TEXT_OTHER_PART - TEXT_NO_SENSOR == FAULT_OTHER_PART - 1, "words for each fault");
 _Static_assert(TEXT_WATCHDOG - TEXT_POWER_ON == HAL_RESET_WATCHDOG, "words for each cause");
 _Static_assert(TEXT_STATE_FAULTY - TEXT_STATE_STOPPED == ADXL345_FAULTY, "words for each phase");
 

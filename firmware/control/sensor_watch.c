@@ -3,11 +3,11 @@
 
 #include <stdbool.h>
 
-#include "adxl345.h"
 #include "base/counters.h"
 #include "base/notices.h"
 #include "hal_led.h"
 #include "machine.h"
+#include "path/gravity.h"
 #include "settings/settings.h"
 
 /* Half a slot of the LED's pattern is 2^16 us; eight slots are about a second. */
@@ -22,7 +22,7 @@ static const uint8_t flashes[] IN_FLASH = {
     [ADXL345_FAULT_READ_BACK] = 2,     [ADXL345_FAULT_INT1_SILENT] = 3, [ADXL345_FAULT_NO_DATA] = 2,
     [ADXL345_FAULT_SCL_LOW] = 1,       [ADXL345_FAULT_SDA_LOW] = 1,     [ADXL345_FAULT_INT1_STUCK] = 3,
     [ADXL345_FAULT_STUCK] = 4,         [ADXL345_FAULT_TORN] = 4,        [ADXL345_FAULT_TWO_SENSORS] = 4,
-    [ADXL345_FAULT_INT1_FLICKERS] = 3,
+    [ADXL345_FAULT_INT1_FLICKERS] = 3, [FAULT_OTHER_PART] = 4,
 };
 
 typedef struct {
@@ -33,6 +33,9 @@ typedef struct {
     uint16_t reported_mask; /* fault codes reported during the outage: each once */
     uint8_t newest;         /* its newest fault code; NONE: no outage */
     bool over;              /* the outage is over, and the line that reports it is not queued yet */
+    uint8_t shown;          /* the fault in force, with FAULT_OTHER_PART */
+    bool part_reported;     /* FAULT_OTHER_PART, which is beside the outage, has had its first line, at: */
+    uint32_t part_s;
 } watch_t;
 
 static watch_t watch;
@@ -41,6 +44,11 @@ static sensor_outage_t reported;
 const sensor_outage_t *sensor_watch_outage(void)
 {
     return &reported;
+}
+
+uint8_t sensor_watch_fault(void)
+{
+    return watch.shown;
 }
 
 /* Nothing is reported about the time before. */
@@ -57,15 +65,21 @@ static void begin_outage(watch_t *w, uint32_t now_us)
     w->began_lost = counted(COUNT_LOST);
 }
 
-/* Microseconds wrap after 71 minutes: an outage of a minute or more is in whole seconds. Milliseconds wrap too. */
+/* Milliseconds since then, in whole seconds. They wrap after 49 days. */
+static MACHINE_APART uint32_t whole_ms(uint32_t began_s)
+{
+    uint32_t seconds = counted(COUNT_SECONDS) - began_s;
+    return seconds < MS_WRAP_S ? seconds * 1000u : UINT32_MAX;
+}
+
+/* Microseconds wrap after 71 minutes: an outage of a minute or more is in whole seconds. */
 static void end_outage(watch_t *w, uint32_t now_us)
 {
-    uint32_t seconds = counted(COUNT_SECONDS) - w->began_s;
-    if (seconds < 60u) {
-        w->outage.ms = (now_us - w->began_us) / 1000u;
-    } else {
-        w->outage.ms = seconds < MS_WRAP_S ? seconds * 1000u : UINT32_MAX;
+    uint32_t ms = whole_ms(w->began_s);
+    if (ms < 60000u) {
+        ms = (now_us - w->began_us) / 1000u;
     }
+    w->outage.ms = ms;
     w->outage.lost = counted(COUNT_LOST) - w->began_lost;
     w->outage.address = adxl345_address();
     w->over = true;
@@ -76,10 +90,8 @@ static void end_outage(watch_t *w, uint32_t now_us)
  * is the same outage. It is over when the pipeline has taken the samples that came again: the missing ones are counted
  * then.
  */
-static void note(uint8_t fault, uint32_t now_us)
+static void note(watch_t *w, uint8_t fault, uint32_t now_us)
 {
-    watch_t *w = &watch;
-    MACHINE_POINTER(w);
     if (fault != ADXL345_FAULT_NONE) {
         if (w->newest == ADXL345_FAULT_NONE) {
             begin_outage(w, now_us);
@@ -99,38 +111,72 @@ static void show(uint8_t fault, uint32_t now_us)
     hal_led_set((half_slot & 1u) == 0 && slot < flash_u8(&flashes[fault]));
 }
 
+static MACHINE_APART uint16_t newest_bit(void)
+{
+    return (uint16_t)(1u << watch.newest);
+}
+
 void sensor_watch_start(uint32_t now_us)
 {
     forget();
-    note((uint8_t)adxl345_fault(), now_us);
-    watch.reported_mask = (uint16_t)(1u << watch.newest);
+    if (!MACHINE_RAM_CLEARED) {
+        watch.part_reported = false;
+    }
+    note(&watch, (uint8_t)adxl345_fault(), now_us);
+    watch.reported_mask = newest_bit();
 }
 
-/* Reports what was noted and is not reported yet, one line at a time. */
-static void tell(void)
+/* It costs no sample; what is lost meanwhile is that of another fault. */
+static void tell_part(watch_t *w)
 {
-    uint16_t bit = (uint16_t)(1u << watch.newest);
-    if (watch.newest == ADXL345_FAULT_NONE || settings()->mode == MODE_PLOT) {
+    bool told = w->part_reported;
+    if (told == gravity_absent() || !notices_add((notice_kind_t)(NOTICE_FAULT_BEGIN + told), FAULT_OTHER_PART)) {
         return;
     }
-    if (!(watch.reported_mask & bit)) {
-        if (notices_add(NOTICE_FAULT_BEGIN, watch.newest)) {
-            watch.reported_mask |= bit;
-        }
-    } else if (watch.over && !notices_hold(NOTICE_FAULT_END, NOTICE_FAULT_END) &&
-               notices_add(NOTICE_FAULT_END, watch.newest)) {
-        reported = watch.outage;
-        forget();
+    w->part_reported = !told;
+    if (told) {
+        reported = (sensor_outage_t){ whole_ms(w->part_s), 0, adxl345_address() };
+    } else {
+        w->part_s = counted(COUNT_SECONDS);
     }
+}
+
+/* Reports what was noted and is not reported yet; `reported` has room for one end. */
+static void tell(watch_t *w)
+{
+    if (settings()->mode == MODE_PLOT || notices_hold(NOTICE_FAULT_END, NOTICE_FAULT_END)) {
+        return;
+    }
+    if (w->newest != ADXL345_FAULT_NONE) {
+        uint16_t bit = newest_bit();
+        if (!(w->reported_mask & bit)) {
+            if (notices_add(NOTICE_FAULT_BEGIN, w->newest)) {
+                w->reported_mask |= bit;
+            }
+        } else if (w->over && notices_add(NOTICE_FAULT_END, w->newest)) {
+            reported = w->outage;
+            forget();
+            return;
+        }
+    }
+    tell_part(w);
 }
 
 void sensor_watch_pass(uint32_t now_us)
 {
+    watch_t *w = &watch;
+    MACHINE_POINTER(w);
     uint8_t fault = (uint8_t)adxl345_fault();
-    show(fault, now_us);
-    if (adxl345_phase() == ADXL345_STOPPED) {
-        forget(); /* not repaired, just not polled */
+    if (adxl345_phase() == ADXL345_STOPPED) { /* not repaired, just not polled */
+        forget();
+        w->part_reported = false;
+        gravity_forget();
     }
-    note(fault, now_us);
-    tell();
+    note(w, fault, now_us);
+    if (fault == ADXL345_FAULT_NONE && gravity_absent()) {
+        fault = FAULT_OTHER_PART;
+    }
+    w->shown = fault;
+    show(fault, now_us);
+    tell(w);
 }

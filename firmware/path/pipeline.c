@@ -7,13 +7,15 @@
 #include "base/choice.h"
 #include "base/counters.h"
 #include "machine.h"
+#include "path/gravity.h"
 #include "path/silence.h"
 #include "path/supervisor.h"
 #include "tilt_axis.h"
 
 enum { AXES = 3, WARM_ROWS = 5 };
 enum { HUNG_SAMPLES = 16 };                /* samples in a row with ROW_STUCK: a filter has learned from them */
-enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_retime; 1 degree */
+enum { CALLS_OFF = 5, STILL_LSB_Q2 = 18 }; /* pipeline_second; 1 degree */
+enum { SECOND_SAMPLES = ROW_FAULT };       /* in a second's flags: samples came, or were missing */
 
 /* What pipeline_work is to take through the filters: a sample, or the place of a missing one. */
 typedef enum { WORK_NONE, WORK_SAMPLE, WORK_COAST } work_t;
@@ -28,6 +30,7 @@ static struct pipeline {
     uint16_t true_dhz; /* the rate that the filters have */
     uint8_t calls_off;
     uint16_t flags;
+    uint8_t second_flags; /* those since the last second, and SECOND_SAMPLES */
     uint8_t warm_rows;
     uint8_t work;     /* work_t */
     uint8_t to_begin; /* axes that are still to get a new filter, the last of them first */
@@ -64,6 +67,8 @@ void pipeline_reset(void)
     pipeline.tilt = (tilt_t){ 0, 0, false };
     pipeline.raw_tilt = pipeline.tilt;
     pipeline.flags = 0;
+    pipeline.second_flags = 0;
+    gravity_forget();
 #if SUPERVISOR
     supervisor_reset();
 #endif
@@ -105,25 +110,39 @@ static void begin_all(bool cold)
     p->to_begin = AXES;
 }
 
-void pipeline_retime(uint32_t period_us)
+static void retime(uint32_t period_us, bool still)
+{
+    struct pipeline *p = here();
+    uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
+    uint16_t near_dhz = (p->true_dhz >> 7) + 1u;
+    if ((uint16_t)(true_dhz - p->true_dhz + near_dhz) <= (uint16_t)(2u * near_dhz)) {
+        p->calls_off = 0;
+    } else if (p->calls_off < CALLS_OFF) {
+        p->calls_off++;
+    } else if (still) {
+        p->true_dhz = true_dhz;
+        begin_all(false);
+    }
+}
+
+/* Estimates are at most 4,608 LSB, so |a|^2 in Q4 is below 2^31. What disturbs a second's samples: its flags. */
+void pipeline_second(uint32_t period_us)
 {
     bool still = true;
+    uint32_t square_lsb2_q4 = 0;
     for (uint8_t axis = 0; axis < AXES; axis++) {
-        uint16_t now_lsb_q2 = (uint16_t)(tilt_axis_estimate_q8(&pipeline.axes[axis]) >> 6);
-        if ((uint16_t)(now_lsb_q2 - pipeline.looked_lsb_q2[axis] + STILL_LSB_Q2) > 2u * STILL_LSB_Q2) {
+        int16_t now_lsb_q2 = (int16_t)(tilt_axis_estimate_q8(&pipeline.axes[axis]) >> 6);
+        if ((uint16_t)((uint16_t)now_lsb_q2 - pipeline.looked_lsb_q2[axis] + STILL_LSB_Q2) > 2u * STILL_LSB_Q2) {
             still = false;
         }
-        pipeline.looked_lsb_q2[axis] = now_lsb_q2;
+        pipeline.looked_lsb_q2[axis] = (uint16_t)now_lsb_q2;
+        square_lsb2_q4 += (uint32_t)((int32_t)now_lsb_q2 * now_lsb_q2);
     }
-    uint16_t true_dhz = (uint16_t)(UINT32_C(10000000) / period_us);
-    uint16_t near_dhz = (pipeline.true_dhz >> 7) + 1u;
-    if ((uint16_t)(true_dhz - pipeline.true_dhz + near_dhz) <= (uint16_t)(2u * near_dhz)) {
-        pipeline.calls_off = 0;
-    } else if (pipeline.calls_off < CALLS_OFF) {
-        pipeline.calls_off++;
-    } else if (still) {
-        pipeline.true_dhz = true_dhz;
-        begin_all(false);
+    retime(period_us, still);
+    uint8_t seen = pipeline.second_flags & (ROW_COASTED | ROW_CLIPPED | SECOND_SAMPLES | ROW_STUCK | ROW_WARMING_UP);
+    pipeline.second_flags = 0;
+    if (seen == SECOND_SAMPLES) {
+        gravity_second(still, (uint16_t)(square_lsb2_q4 >> 16));
     }
 }
 
@@ -292,6 +311,7 @@ void pipeline_flag(uint16_t flags)
 {
     struct pipeline *p = here();
     p->flags |= flags;
+    p->second_flags = (uint8_t)(p->second_flags | flags | SECOND_SAMPLES);
     if (flags & ROW_STUCK) {
         p->is_stuck = true;
     }

@@ -67,13 +67,13 @@ void pipeline_change(const filter_choice_t *choice, uint16_t rate_dhz, uint8_t r
 /*
  * Call each second with the measured time between samples. If the measured rate differs from the filters' by more than
  * 1/128 and 0.1 Hz for 5 seconds, the filters continue from their outputs with the parameters of the measured rate.
- * That loses their rates of change, so it waits until each axis' estimate is where it was a second ago, within a degree
- * (4.5 LSB). No row shows it.
+ * That loses their rates of change, so it waits until the board is at rest: each axis' estimate is where it was a
+ * second ago, within a degree (4.5 LSB). No row shows it. What such a second shows of gravity: gravity.h.
  */
-void pipeline_retime(uint32_t period_us);
+void pipeline_second(uint32_t period_us);
 
 /*
- * One piece of the work that pipeline_change, _retime, _coast or _sample has started: the filter of an axis changed,
+ * One piece of the work that pipeline_change, _second, _coast or _sample has started: the filter of an axis changed,
  * up to 2.4 ms, or a sample; false: nothing was left to do. So the main loop can do other things in between.
  * Start nothing else until it is done; only a change may replace a change.
  */

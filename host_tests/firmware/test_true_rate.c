@@ -69,7 +69,7 @@ static void sample(int16_t y_lsb)
 static bool look(uint32_t period_us)
 {
     uint16_t before_dhz = pipeline_rate_dhz();
-    pipeline_retime(period_us);
+    pipeline_second(period_us);
     pipeline_finish();
     return pipeline_rate_dhz() != before_dhz;
 }

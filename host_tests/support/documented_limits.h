@@ -93,7 +93,7 @@
       "test_true_rate: test_the_sixth_second_off_hands_the_rate_over_once")                                            \
     X(STILL_LSB_Q1, 9, "docs/protocol.md: within {v / 2} LSB (one degree)",                                            \
       "firmware/path/pipeline.c: STILL_LSB_Q2 = {v * 2} ", "test_true_rate: test_the_most_that_is_standing_still")     \
-    X(OUTAGE_S, 60, "docs/faults.md: from {} s on in whole seconds", "firmware/control/sensor_watch.c: seconds < {}u", \
+    X(OUTAGE_S, 60, "docs/faults.md: from {} s on in whole seconds", "firmware/control/sensor_watch.c: (ms < {}000u)", \
       "test_app_bounds: test_an_outage_from_a_minute_on_is_in_whole_seconds")                                          \
     X(LED_MS, 65, "docs/faults.md: that many flashes of {} ms",                                                        \
       "firmware/control/sensor_watch.c: FLASH_SHIFT {(v * 1000).bit_length()}",                                        \
@@ -140,6 +140,12 @@
     X(DEAF_MS, 250, "docs/faults.md: After {} ms the edges",                                                           \
       "hal/hal_drdy.h: HAL_DRDY_DEAF_TICKS = {1 - (-v * 1000 // 8192)} ",                                              \
       "test_driver_int1: test_nine_edges_in_a_tick_flicker")                                                           \
+    X(NO_GRAVITY_S, 10, "docs/faults.md: for {word} seconds at rest", "firmware/path/gravity.c: ABSENT_S = {} ",       \
+      "test_gravity: test_ten_seconds_at_rest_and_the_first_within")                                                   \
+    X(GRAVITY_LEAST_LSB, 157, "docs/faults.md: outside {} to", "firmware/path/gravity.c: LEAST = {v * v >> 12},",      \
+      "test_gravity: test_the_limits_on_every_axis")                                                                   \
+    X(GRAVITY_MOST_LSB, 356, "docs/faults.md: to {} LSB (0.61 to 1.39 g",                                              \
+      "firmware/path/gravity.c: BEYOND = {(v + 1) * (v + 1) >> 12} ", "test_gravity: test_the_limits_on_every_axis")   \
     X(WATCHDOG_MS, 250, "docs/faults.md: did not come by within {} ms",                                                \
       "hal/hal_watchdog.h: HAL_WATCHDOG_MS {}u | hal/avr/hal_watchdog.c: WDTO_{}MS",                                   \
       "test_health: test_a_driver_that_nobody_polls_is_not_healthy")                                                   \

@@ -14,12 +14,12 @@ WITHIN = ("--max-ms", 5900)  # of the stream
 FLAG_NO_GRAVITY = 512
 
 
-def at_rest(name, noise_mg, tilt=(0.0, 0.0, 1.0)):
-    """A stream of END_S: this direction of gravity, with noise. It is at the rate of a self-test, so that no reading comes twice."""
+def at_rest(name, noise_mg, tilt=(0.0, 0.0, 1.0), end_s=END_S):
+    """A stream of end_s: this direction of gravity, with noise. It is at the rate of a self-test, so that no reading comes twice."""
     dice, path = random.Random(name), OUT / f"{name}-rest.csv"
     with open(path, "w", encoding="ascii") as file:
         file.write("t_us,x_lsb,y_lsb,z_lsb\n")
-        for i in range(END_S * STREAM_HZ):
+        for i in range(end_s * STREAM_HZ):
             lsb = [round(256 * (g + dice.gauss(0, noise_mg / 1000))) for g in tilt]
             file.write(f"{i * 1000000 // STREAM_HZ},{lsb[0]},{lsb[1]},{lsb[2]}\n")
     return path
@@ -63,7 +63,7 @@ def other_sensor_is_refused_again_after_a_fault_of_its_identity():
 
 @test
 def sensor_of_the_same_identity_and_another_scale_is_believed_and_flagged():
-    """Each is taken for an ADXL345 without a fault. Accelerations are wrong by the ratio of the scales; flag 512 says that it is no gravity."""
+    """Each is taken for an ADXL345 at first. Accelerations are wrong by the ratio of the scales; flag 512 says that it is no gravity."""
     for sensor, (g_per_lsb, noise_mg) in OTHER_SCALES.items():
         rows, notes, _, _ = simrun(f"sensors-{sensor}", at_rest(sensor, noise_mg), "--sensor", sensor, *WITHIN)
         assert "# sensor: ADXL345 at 0x53, I2C at 363.6 kHz" in notes and not any(note.startswith("# fault") for note in notes), notes
@@ -73,6 +73,96 @@ def sensor_of_the_same_identity_and_another_scale_is_believed_and_flagged():
         print(f"    {sensor}: 1 g reads {mean_mg:.1f} mg, by the scales {wanted_mg:.1f}")
         assert abs(mean_mg - wanted_mg) < 0.02 * wanted_mg, (sensor, mean_mg, wanted_mg)
         assert len(settled) > 280 and all(row[9] & FLAG_NO_GRAVITY for row in settled), [row for row in settled if not row[9] & FLAG_NO_GRAVITY][:3]
+
+
+NAMED_S, FAULT_14, OVER_14 = 15, "# fault 14: not an ADXL345, or offsets beyond its data sheet: cal6", "# fault 14 over: after "
+COARSE = {name: noise_mg for name, (g_per_lsb, noise_mg) in OTHER_SCALES.items() if g_per_lsb > 0.02}
+
+
+def faults(notes):
+    return [note for note in notes if note.startswith("# fault")]
+
+
+def typed(*commands):
+    return [word for at_ms, text in commands for word in ("--cmd", f"{at_ms}:{text}")]
+
+
+@test
+def sensor_of_200_g_is_named_within_15_s_at_rest():
+    for sensor, noise_mg in COARSE.items():
+        stream = at_rest(f"named-{sensor}", noise_mg, end_s=NAMED_S + 1)
+        for rate in ("12.5", "100", "400"):
+            _, notes, _, _ = simrun(f"sensors-named-{sensor}", stream, "--sensor", sensor, "--rate", rate, "--baud", "500000",
+                                        "--max-ms", 1000 * NAMED_S, *typed((1000 * NAMED_S - 800, "status")))
+            assert faults(notes) == [FAULT_14] and any(", fault 14, " in note for note in notes), (sensor, rate, notes)
+
+
+@test
+def sensor_that_reads_as_an_adxl345_may_is_not_named():
+    """An ADXL312 at 1.35 g; the limits of the data sheet (p. 3): 250 mg on z, 150 mg on x and y, 10 % of scale."""
+    tested = [("adxl312", (0, 0, 1), (0, 0, 0), 1.0, "100")]
+    for sign in (1, -1):
+        for offset_lsb in (64, -64):
+            tested += [("adxl345", (0, 0, sign), (0, 0, offset_lsb), 1.1 if sign * offset_lsb > 0 else 0.9, rate) for rate in ("12.5", "100", "800")]
+        tested += [("adxl343", (sign, 0, 0), (38 * sign, -38, 50), 1.1, "100"), ("adxl345", (0, sign, 0), (38, -38 * sign, -50), 0.9, "400")]
+    for number, (sensor, tilt, offset_lsb, gain, rate) in enumerate(tested):
+        part = f"offset={','.join(map(str, offset_lsb))} gain={gain},{gain},{gain}"
+        stream = at_rest(f"sound-{number}", 5, tilt, end_s=NAMED_S + 1)
+        _, notes, _, _ = simrun(f"sensors-sound-{number}", stream, "--sensor", sensor, "--part", part, "--rate", rate, "--baud", "500000",
+                                "--every", "8" if rate == "800" else "1", "--max-ms", 1000 * NAMED_S, judge=False)
+        assert not faults(notes), (sensor, tilt, part, rate, notes)
+
+
+@test
+def outages_of_a_sound_sensor_do_not_name_it():
+    """Unplugged, without supply, frozen: what is held or repeated meanwhile is not counted."""
+    stream = at_rest("outages", 5, end_s=61)
+    for kind, last_ms in (("unplug", 15000), ("power", 1), ("frozen", 15000), ("sda", 15000)):
+        words = [word for at_ms in (2000, 19500, 37200) for word in ("--fault", f"{at_ms}ms:{kind}:{last_ms}")]
+        _, notes, _, _ = simrun(f"sensors-outages-{kind}", stream, *words, "--max-ms", 60000, judge=False)
+        assert not any("fault 14" in note for note in notes) and len(faults(notes)) >= 6, (kind, notes)
+
+
+@test
+def other_faults_begin_and_end_while_fault_14_lasts():
+    stream = at_rest("beside", COARSE["adxl375"], end_s=24)
+    _, notes, _, _ = simrun("sensors-beside", stream, "--sensor", "adxl375", "--fault", "13000ms:unplug:500", "--fault", "16000ms:noint:500",
+                            *typed((13300, "status"), (20000, "selftest"), (22500, "status")), "--max-ms", 23500, judge=False)
+    begun = [note.split(":")[0] for note in faults(notes)]
+    assert begun == ["# fault 14", "# fault 1", "# fault 1 over", "# fault 5", "# fault 5 over"], notes
+    shown = [re.search(r", fault (\d+), ", note)[1] for note in notes if ", fault " in note]
+    assert shown == ["1", "14"] and selftest_verdicts(notes) == ["FAIL", "FAIL", "pass"], notes
+
+
+@test
+def stop_and_go_report_fault_14_once_each():
+    stream = at_rest("stopped", COARSE["adxl314"], end_s=41)
+    _, notes, _, _ = simrun("sensors-stopped", stream, "--sensor", "adxl314", *typed((13000, "stop"), (20000, "status"), (24000, "go")),
+                            "--max-ms", 40000, judge=False)
+    assert faults(notes) == [FAULT_14] * 2 and any(", fault 0, " in note for note in notes), notes
+
+
+@test
+def plot_has_no_line_of_fault_14():
+    stream = at_rest("plotted", COARSE["adxl375"], end_s=21)
+    _, notes, _, _ = simrun("sensors-plotted", stream, "--sensor", "adxl375", *typed((1000, "mode plot"), (18000, "mode csv")),
+                            "--max-ms", 20000, judge=False)
+    csv_again = len(notes) - 1 - notes[::-1].index(next(note for note in notes if note.startswith("t_us,")))
+    assert faults(notes) == [FAULT_14] and notes.index(FAULT_14) > csv_again, notes
+
+
+@test
+def fault_14_ends_when_the_readings_are_those_of_gravity():
+    """As with a sensor that was changed: 0.08 g, then 1 g."""
+    path = at_rest("ends", 5, end_s=20)
+    lines = path.read_text(encoding="ascii").splitlines()
+    for i in range(1, 14 * STREAM_HZ):
+        t_us, x, y, z = lines[i].split(",")
+        lines[i] = f"{t_us},{x},{y},{int(z) - 236}"
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+    _, notes, _, _ = simrun("sensors-ends", path, "--max-ms", 19000)
+    begun, over = faults(notes)
+    assert begun == FAULT_14 and re.fullmatch(OVER_14 + r"[45]000 ms, 0 lost, sensor at 0x53", over), notes
 
 
 @test

@@ -27,6 +27,9 @@ ALWAYS = (
     (11, "torn readings: check SDA, SCL, pull-ups, GND", ["p:1:torn"]),
 )
 ALWAYS_MS = 400
+# the sensor reads 0.2 g at rest
+OTHER_PART = "# fault 14: not an ADXL345, or offsets beyond its data sheet: cal6"
+OTHER_PART_MS, OTHER_PART_OPTIONS = 13000, ("--loop", "--part", "offset=0,0,-200")
 
 
 def reported_by(faults, address, options, image, max_ms):
@@ -56,6 +59,8 @@ def check_words(image, address, options):
         lines = reported_by([fault], address, options, image, ALWAYS_MS)
         assert len(lines) >= 2 and all(line == begun[code] for line in lines[0::2]), (image, lines)
         assert all(is_over(line, code, address) for line in lines[1::2]), (image, lines)
+    lines = reported_by([], address, (*options, *OTHER_PART_OPTIONS), image, OTHER_PART_MS)
+    assert lines == [OTHER_PART], (image, lines)
 
 
 @test

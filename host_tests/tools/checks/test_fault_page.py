@@ -1,4 +1,4 @@
-"""docs/faults.md lists exactly the fault codes of the driver and the words that the firmware has for them, and each counter of `status`."""
+"""docs/faults.md lists exactly the fault codes of driver and firmware and the words that the firmware has for them, and each counter of `status`."""
 import pathlib
 import re
 import subprocess
@@ -28,10 +28,13 @@ def texts():
 
 
 def codes():
-    """name -> number of the driver's enumeration, without NONE."""
+    """name -> number of the driver's enumeration, without NONE, and the firmware's own after them."""
     text = pathlib.Path("lib/adxl345/src/adxl345.h").read_text(encoding="utf-8")
     found = {name: int(number) for name, number in re.findall(r"ADXL345_FAULT_(\w+) = (\d+)", text)}
     assert found.pop("NONE") == 0
+    watch = pathlib.Path("firmware/control/sensor_watch.h").read_text(encoding="utf-8")
+    name, last = re.search(r"FAULT_(\w+) = ADXL345_FAULT_(\w+) \+ 1", watch).groups()
+    found[name] = found[last] + 1
     return found
 
 
@@ -59,7 +62,7 @@ def words_are_those_of_the_firmware():
 @test
 def flashes_are_those_of_the_led():
     source = pathlib.Path("firmware/control/sensor_watch.c").read_text(encoding="utf-8")
-    table = {name: int(times) for name, times in re.findall(r"\[ADXL345_FAULT_(\w+)\] = (\d)", source)}
+    table = {name: int(times) for name, times in re.findall(r"\[(?:ADXL345_)?FAULT_(\w+)\] = (\d)", source)}
     assert {number: table[name] for name, number in codes().items()} == {code: times for code, _, times in rows()}
 
 
