@@ -40,6 +40,20 @@ static void test_angles_of_a_sensor_at_rest(void)
     TEST_ASSERT_INT16_WITHIN(3, 3006, tilt.angles.pitch_cdeg);
 }
 
+/* All that a program may read has a value before the first sample, whatever the memory held. */
+static void test_a_start_sets_every_result(void)
+{
+    static const int32_t nothing_q8[TILT_FILTER_AXES];
+    tilt_filter_t t;
+    memset(&t, 0x5A, sizeof t);
+    TEST_ASSERT_TRUE(tilt_filter_begin(&t, 100));
+    TEST_ASSERT_EQUAL_INT16(0, t.angles.roll_cdeg);
+    TEST_ASSERT_EQUAL_INT16(0, t.angles.pitch_cdeg);
+    TEST_ASSERT_FALSE(t.angles.roll_undefined);
+    TEST_ASSERT_EQUAL_HEX16(TILT_WARMING_UP, t.flags);
+    TEST_ASSERT_EQUAL_MEMORY(nothing_q8, t.a_q8, sizeof nothing_q8);
+}
+
 static void test_flags_of_the_start(void)
 {
     for (int i = 0; i < FILTER_WARM_UP_SAMPLES; i++) {
@@ -228,7 +242,7 @@ static void test_any_calls_stay_within_bounds(void)
 
 /* --- healthy samples --- */
 
-/* Of the first example in README, on each axis: today's, `sprf` told a fixed R, refused 19 to 53 % of such samples. */
+/* Of the facade with its default law, on each axis. With a fixed R a gate refuses 19 to 53 % of such samples. */
 #define REFUSED_MAX 0.02
 
 typedef struct {
@@ -308,8 +322,8 @@ static void test_healthy_samples_of_recordings_are_taken(void)
     TEST_ASSERT_EQUAL_UINT(12, judged);
 }
 
-/* Begun anew after a hold there is nothing to rejoin: the next sample is a first one, wherever it lies. */
-static void test_begun_anew_it_takes_the_first_sample(void)
+/* After a restart there is no held value to rejoin: the next sample is a first one, wherever it lies. */
+static void test_a_restart_takes_the_first_sample(void)
 {
     rest(&tilt, 0, 0, 256);
     for (int i = 0; i < 30; i++) {
@@ -325,8 +339,9 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_angles_of_a_sensor_at_rest);
+    RUN_TEST(test_a_start_sets_every_result);
     RUN_TEST(test_flags_of_the_start);
-    RUN_TEST(test_begun_anew_it_takes_the_first_sample);
+    RUN_TEST(test_a_restart_takes_the_first_sample);
     RUN_TEST(test_flags_of_no_gravity_and_no_roll);
     RUN_TEST(test_a_reading_at_the_end_of_its_range_is_flagged);
     RUN_TEST(test_sensors_with_more_bits);

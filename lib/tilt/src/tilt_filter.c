@@ -71,6 +71,9 @@ bool tilt_filter_begin_with(tilt_filter_t *t, uint16_t rate_hz, const filter_law
     t->angles.roll_cdeg = 0;
     t->angles.pitch_cdeg = 0;
     t->angles.roll_undefined = false;
+    for (uint8_t axis = 0; axis < (uint8_t)TILT_FILTER_AXES; axis++) {
+        t->a_q8[axis] = 0;
+    }
     t->shift = 0;
     t->rail_high_lsb = highest_of(FILTER_BITS);
     (void)set_scale(t, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
