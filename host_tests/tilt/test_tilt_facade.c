@@ -165,6 +165,57 @@ static void test_an_illegal_sensor_changes_nothing(void)
     }
 }
 
+/* --- calibration --- */
+
+/* A board that is mounted on its edge, with offsets of 16 and -8 LSB on the sensor's x and z: its y points up. */
+static calibration_t on_its_edge(void)
+{
+    calibration_t c;
+    calibration_plain(&c, CALIBRATION_SCALE_UQ6(256U), CALIBRATION_SCALE_UQ6(256U));
+    c.offset_lsb_q4[0] = 16 * 16;
+    c.offset_lsb_q4[2] = -8 * 16;
+    c.axes[0] = 3; /* ours: the sensor's z, x, y */
+    c.axes[1] = 1;
+    c.axes[2] = 2;
+    return c;
+}
+
+static void test_a_calibration_is_in_force_at_once(void)
+{
+    calibration_t edge = on_its_edge();
+    TEST_ASSERT_EQUAL_UINT8(CALIBRATION_GOOD, tilt_filter_calibrate(&tilt, &edge).why);
+    rest(&tilt, 16, 256, -8);
+    TEST_ASSERT_INT16_WITHIN(3, 0, tilt.angles.roll_cdeg);
+    TEST_ASSERT_INT16_WITHIN(3, 0, tilt.angles.pitch_cdeg);
+    rest(&tilt, 16 + 154, 205, -8); /* 3, 4, 5: 36.87 degrees */
+    TEST_ASSERT_INT16_WITHIN(10, 3691, tilt.angles.roll_cdeg);
+    rest(&tilt, 16, 205, -8 - 154);
+    TEST_ASSERT_INT16_WITHIN(10, 3691, tilt.angles.pitch_cdeg);
+    TEST_ASSERT_EQUAL_HEX16(0, tilt.flags);
+}
+
+static void test_an_illegal_calibration_is_named_and_changes_nothing(void)
+{
+    calibration_t edge = on_its_edge();
+    edge.scale_lsb_per_g_uq6[1] = CALIBRATION_SCALE_UQ6(199U);
+    tilt_filter_t before = tilt;
+    calibration_verdict_t verdict = tilt_filter_calibrate(&tilt, &edge);
+    TEST_ASSERT_EQUAL_UINT8(CALIBRATION_SCALE, verdict.why);
+    TEST_ASSERT_EQUAL_UINT8(1, verdict.where);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &tilt, sizeof tilt);
+}
+
+/* A sensor's scale replaces a calibration, which belongs to another sensor. */
+static void test_a_sensor_set_later_replaces_the_calibration(void)
+{
+    calibration_t edge = on_its_edge();
+    TEST_ASSERT_EQUAL_UINT8(CALIBRATION_GOOD, tilt_filter_calibrate(&tilt, &edge).why);
+    TEST_ASSERT_TRUE(tilt_filter_sensor(&tilt, 13, 256, 256));
+    rest(&tilt, 0, 0, 256);
+    TEST_ASSERT_EQUAL_INT32(256 * 256, tilt.a_q8[2]);
+    TEST_ASSERT_EQUAL_INT32(0, tilt.a_q8[0]);
+}
+
 /* --- any input --- */
 
 static void test_an_illegal_rate_gives_the_nearest(void)
@@ -347,6 +398,9 @@ int main(void)
     RUN_TEST(test_sensors_with_more_bits);
     RUN_TEST(test_the_rails_of_other_sensors);
     RUN_TEST(test_an_illegal_sensor_changes_nothing);
+    RUN_TEST(test_a_calibration_is_in_force_at_once);
+    RUN_TEST(test_an_illegal_calibration_is_named_and_changes_nothing);
+    RUN_TEST(test_a_sensor_set_later_replaces_the_calibration);
     RUN_TEST(test_an_illegal_rate_gives_the_nearest);
     RUN_TEST(test_an_illegal_parameter_is_named_and_changes_nothing);
     RUN_TEST(test_any_calls_stay_within_bounds);
