@@ -8,10 +8,10 @@
  *   show(tilt.angles.roll_cdeg, tilt.angles.pitch_cdeg, tilt.flags);
  *
  * On the same samples, at the nominal rate, angles and flags are those of this project's firmware, bit for bit; the
- * firmware also measures the true rate, and restarts its filters after a stuck sensor. Readings are those of
- * the ADXL345 in full resolution, 13 bits: -4096..4095 LSB of 1/256 g; see tilt_filter_sensor for others. A reading at
- * the end of its range or beyond is flagged TILT_CLIPPED and counts as missing. Axes as on the ADXL345: roll = atan2(y,
- * z), pitch = atan2(-x, sqrt(y^2 + z^2)). Plain data, 405 bytes on an AVR; one caller at a time, from main or from an
+ * firmware also measures the true rate, and restarts its filters after a stuck sensor. Readings are those of the
+ * ADXL345 in full resolution, 13 bits: -4096..4095 LSB of 1/256 g; see tilt_filter_sensor for others. A reading at the
+ * end of its range or beyond is flagged TILT_CLIPPED and counts as missing. Axes as on the ADXL345: roll = atan2(y, z),
+ * pitch = atan2(-x, sqrt(y^2 + z^2)). Plain data, 405 bytes on an AVR; one caller at a time, from main or from an
  * interrupt.
  */
 #ifndef TILT_FILTER_H
