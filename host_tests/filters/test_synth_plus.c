@@ -102,20 +102,6 @@ static void border_of_the_region_is_outside(void)
     }
 }
 
-static void parameters_outside_are_refused(void)
-{
-    filter_t f;
-    filter_config_t config = with(9, 32768, -16384, 0);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_FIRST + SYNTH_PLUS_K, filter_init(&f, &filter_law_synth_plus, &config));
-    config = with(2, 655, 0, 0);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_FIRST + SYNTH_PLUS_B0_UQ16,
-                            filter_init(&f, &filter_law_synth_plus, &config));
-    config = with(0, 60000, 65536, -60000);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_FIRST + SYNTH_PLUS_B1_Q16, filter_init(&f, &filter_law_synth_plus, &config));
-    config = with(0, 60000, 60000, -65536);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_FIRST + SYNTH_PLUS_B2_Q16, filter_init(&f, &filter_law_synth_plus, &config));
-}
-
 /* After a reset there is no innovation to remember, whatever came before. */
 static void reset_forgets_the_innovations(void)
 {
@@ -242,7 +228,6 @@ int main(void)
     RUN_TEST(answers_are_those_of_the_equation);
     RUN_TEST(rho_is_a_shift);
     RUN_TEST(border_of_the_region_is_outside);
-    RUN_TEST(parameters_outside_are_refused);
     RUN_TEST(reset_forgets_the_innovations);
     RUN_TEST(without_memory_it_is_synth);
     RUN_TEST(start_on_a_ramp_finds_its_slope);
