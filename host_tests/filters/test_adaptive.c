@@ -126,7 +126,7 @@ static void memory_grows_by_half_a_sample(void)
     TEST_ASSERT_TRUE(memory > 200.0 && memory < 212.0);
 }
 
-/* Mean of the scatter over the last four fifths of 2000 noisy samples, LSB / 256; told R = 100 after each of them. */
+/* Mean of the scatter over the last four fifths of 2000 noisy samples, LSB / 256; R = 100 is set after each of them. */
 static uint32_t mean_scatter_uq8(bool identify)
 {
     filter_t f;
@@ -145,7 +145,7 @@ static uint32_t mean_scatter_uq8(bool identify)
 }
 
 /*
- * Off, sigma is what was told last. On, it is told too late to count: the scatter is at least the 0.972 sigma of
+ * Off, sigma is the one set last. On, it is set too late to count: the scatter is at least the 0.972 sigma of
  * Gaussian noise at the shortest memory (reference_adaptive_scatter) and at most the 1.000 of the slowest times 1.11,
  * since a mean size of uniform noise is 0.866 sigma instead of the 0.798 of Gaussian. Sigma is 4.90 LSB (variance
  * (17^2 - 1) / 12); 9 % for chance: three deviations of a mean over 800 terms, of which 31 weigh in each value.
@@ -175,7 +175,7 @@ static void a_gap_breaks_agreement(void)
     TEST_ASSERT_TRUE(f.own.adaptive.scatter_lsb_uq24 < scatter + scatter / 8U);
 }
 
-/* A prediction at the end of the range and a sample beyond the gate: both are told. */
+/* A prediction at the end of the range and a sample beyond the gate: both are flagged. */
 static void a_gated_sample_keeps_the_saturation(void)
 {
     filter_t f = settled(100, true);

@@ -190,7 +190,7 @@ static void outlier_in_the_start_costs_nothing(void)
 }
 
 /* R = 3 LSB^2: alpha-beta of 1/2 and 1/4 has (1/2 + 1/8) / (1/2 x 2.75) = 5/11. A sample's in the start. */
-static void probe_tells_the_variance(void)
+static void probe_reports_the_variance(void)
 {
     filter_probe_t probe;
     filter_t f;
@@ -233,7 +233,7 @@ int main(void)
     RUN_TEST(start_on_a_ramp_finds_its_slope);
     RUN_TEST(start_ends_with_sample_31);
     RUN_TEST(outlier_in_the_start_costs_nothing);
-    RUN_TEST(probe_tells_the_variance);
+    RUN_TEST(probe_reports_the_variance);
     RUN_TEST(overshoot_beyond_the_format_is_flagged);
     return UNITY_END();
 }
