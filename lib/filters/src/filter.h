@@ -14,8 +14,9 @@
  *   if (filter_init(&f, &filter_law_sprf, &config) != FILTER_ACCEPTED) { ... }
  *   int32_t x_lsb_q16 = filter_update(&f, sample);
  *
- * filter_t is plain data without pointers to RAM: copy it, compare it, dump it. Nothing here does I/O, allocates, uses
- * float or blocks. Every function may be called from main or from an interrupt, by one caller at a time per filter_t.
+ * Every function that takes a filter_t, except filter_init, needs one that filter_init has accepted. It is plain data
+ * without pointers to RAM: copy it, compare it, dump it. Nothing here does I/O, allocates, uses float or blocks. Every
+ * function may be called from main or from an interrupt, by one caller at a time per filter_t.
  */
 #ifndef FILTER_H
 #define FILTER_H
@@ -181,8 +182,7 @@ void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8);
 
 /*
  * The R that a law has identified itself, LSB^2 in Q8, at most 10,200 LSB^2. Such a law needs no filter_set_noise and
- * no noise estimate beside it. 0: the law uses the R that is set. Only for a filter that filter_init has accepted.
- * About 80 cycles.
+ * no noise estimate beside it. 0: the law uses the R that is set. About 80 cycles.
  */
 uint32_t filter_own_noise_lsb2_q8(const filter_t *f);
 
