@@ -65,7 +65,7 @@ bool init_default(filter_t *f, filter_kind_t kind, uint16_t rate_dhz);
 void random_config(uint32_t *random, filter_kind_t kind, filter_config_t *config);
 
 /*
- * A filter initialised with a random legal configuration. Draws again when init refuses and the filter may do so with every
+ * A filter with a random legal configuration. Draws again when init refuses and the filter may do so with every
  * parameter in range; *refused counts these. False: refused although no such condition exists, or always.
  */
 bool init_random(filter_t *f, filter_kind_t kind, uint32_t *random, uint32_t *refused);
