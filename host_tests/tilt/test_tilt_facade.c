@@ -40,17 +40,6 @@ static void test_angles_of_a_sensor_at_rest(void)
     TEST_ASSERT_INT16_WITHIN(3, 3006, tilt.angles.pitch_cdeg);
 }
 
-/* All that a program may read has a value before the first sample, whatever the memory held. */
-static void test_a_start_sets_every_result(void)
-{
-    tilt_filter_t t;
-    memset(&t, 0x5A, sizeof t);
-    TEST_ASSERT_TRUE(tilt_filter_begin(&t, 100));
-    TEST_ASSERT_TRUE(t.angles.roll_cdeg == 0 && t.angles.pitch_cdeg == 0 && !t.angles.roll_undefined);
-    TEST_ASSERT_EQUAL_HEX16(TILT_WARMING_UP, t.flags);
-    TEST_ASSERT_EACH_EQUAL_INT32(0, t.a_q8, TILT_FILTER_AXES);
-}
-
 static void test_flags_of_the_start(void)
 {
     for (int i = 0; i < FILTER_WARM_UP_SAMPLES; i++) {
@@ -160,49 +149,6 @@ static void test_an_illegal_sensor_changes_nothing(void)
         TEST_ASSERT_FALSE_MESSAGE(tilt_filter_sensor(&tilt, illegal[i].bits, illegal[i].xy, illegal[i].z), text);
         TEST_ASSERT_EQUAL_MEMORY(&before, &tilt, sizeof tilt);
     }
-}
-
-/* --- calibration --- */
-
-/* A board that is mounted on its edge, with offsets of 16 and -8 LSB on the sensor's x and z: its y points up. */
-static calibration_t on_its_edge(void)
-{
-    calibration_t c;
-    calibration_plain(&c, CALIBRATION_SCALE_UQ6(256U), CALIBRATION_SCALE_UQ6(256U));
-    c.offset_lsb_q4[0] = 16 * 16;
-    c.offset_lsb_q4[2] = -8 * 16;
-    c.axes[0] = 3; /* ours: the sensor's z, x, y */
-    c.axes[1] = 1;
-    c.axes[2] = 2;
-    return c;
-}
-
-/* Until a sensor is set: the calibration is not its own. */
-static void test_a_calibration_is_in_force_at_once(void)
-{
-    calibration_t edge = on_its_edge();
-    TEST_ASSERT_EQUAL_UINT8(CALIBRATION_GOOD, tilt_filter_calibrate(&tilt, &edge).why);
-    rest(&tilt, 16, 256, -8);
-    TEST_ASSERT_INT16_WITHIN(3, 0, tilt.angles.roll_cdeg);
-    TEST_ASSERT_INT16_WITHIN(3, 0, tilt.angles.pitch_cdeg);
-    rest(&tilt, 16 + 154, 205, -8); /* 3, 4, 5: 36.87 degrees */
-    TEST_ASSERT_INT16_WITHIN(10, 3691, tilt.angles.roll_cdeg);
-    rest(&tilt, 16, 205, -8 - 154);
-    TEST_ASSERT_INT16_WITHIN(10, 3691, tilt.angles.pitch_cdeg);
-    TEST_ASSERT_TRUE(tilt_filter_sensor(&tilt, 13, 256, 256));
-    rest(&tilt, 0, 0, 256);
-    TEST_ASSERT_EQUAL_INT32(256 * 256, tilt.a_q8[2]);
-}
-
-static void test_an_illegal_calibration_is_named_and_changes_nothing(void)
-{
-    calibration_t edge = on_its_edge();
-    edge.scale_lsb_per_g_uq6[1] = CALIBRATION_SCALE_UQ6(199U);
-    tilt_filter_t before = tilt;
-    calibration_verdict_t verdict = tilt_filter_calibrate(&tilt, &edge);
-    TEST_ASSERT_EQUAL_UINT8(CALIBRATION_SCALE, verdict.why);
-    TEST_ASSERT_EQUAL_UINT8(1, verdict.where);
-    TEST_ASSERT_EQUAL_MEMORY(&before, &tilt, sizeof tilt);
 }
 
 /* --- any input --- */
@@ -362,33 +308,16 @@ static void test_healthy_samples_of_recordings_are_taken(void)
     TEST_ASSERT_EQUAL_UINT(12, judged);
 }
 
-/* After a restart there is no held value to rejoin: the next sample is a first one, wherever it lies. */
-static void test_a_restart_takes_the_first_sample(void)
-{
-    rest(&tilt, 0, 0, 256);
-    for (int i = 0; i < 30; i++) {
-        tilt_filter_missing(&tilt);
-    }
-    TEST_ASSERT_TRUE(tilt_filter_begin(&tilt, 100));
-    tilt_filter_update(&tilt, 0, 265, 0);
-    TEST_ASSERT_EQUAL_HEX16(TILT_WARMING_UP, tilt.flags);
-    TEST_ASSERT_INT16_WITHIN(3, 9000, tilt.angles.roll_cdeg);
-}
-
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_angles_of_a_sensor_at_rest);
-    RUN_TEST(test_a_start_sets_every_result);
     RUN_TEST(test_flags_of_the_start);
-    RUN_TEST(test_a_restart_takes_the_first_sample);
     RUN_TEST(test_flags_of_no_gravity_and_no_roll);
     RUN_TEST(test_a_reading_at_the_end_of_its_range_is_flagged);
     RUN_TEST(test_sensors_with_more_bits);
     RUN_TEST(test_the_rails_of_other_sensors);
     RUN_TEST(test_an_illegal_sensor_changes_nothing);
-    RUN_TEST(test_a_calibration_is_in_force_at_once);
-    RUN_TEST(test_an_illegal_calibration_is_named_and_changes_nothing);
     RUN_TEST(test_an_illegal_rate_gives_the_nearest);
     RUN_TEST(test_an_illegal_parameter_is_named_and_changes_nothing);
     RUN_TEST(test_any_calls_stay_within_bounds);

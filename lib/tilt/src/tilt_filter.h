@@ -41,8 +41,9 @@ typedef struct {
 
 /*
  * After a start: selects another law than `adaptive`, or other parameters than its defaults (NULL: the defaults; the
- * rate is the facade's, and R is estimated). Filters and noise estimates restart. Returns FILTER_ACCEPTED, or what is
- * wrong (filter.h), in which case nothing is changed. Up to 45,000 cycles; a start takes as long.
+ * rate is the facade's, and R is estimated). Filters and noise estimates restart; the angles stay until the next
+ * sample. Returns FILTER_ACCEPTED, or what is wrong (filter.h), in which case nothing is changed. Up to 45,000 cycles;
+ * a start takes as long.
  */
 filter_answer_t tilt_filter_use(tilt_filter_t *t, const filter_law_t *law, const filter_config_t *config);
 
