@@ -30,7 +30,7 @@ static void begin_kalman(filter_t *f)
 {
     const filter_law_t *law = filter_listed(plain_kind());
     filter_config_t config = filter_defaults(law, 405);
-    config.value[KALMAN_R] = 16 * 256; /* told the truth: (0.08 / 0.02)^2 LSB^2, 0.0009 / T / 0.02^2 LSB^2/s^3 */
+    config.value[KALMAN_R] = 16 * 256; /* the true one: (0.08 / 0.02)^2 LSB^2, 0.0009 / T / 0.02^2 LSB^2/s^3 */
     config.value[KALMAN_Q] = 91;
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, law, &config));
 }

@@ -138,7 +138,7 @@ static void test_a_gap_stops_a_rate_within_two_of_its_sigmas(void)
 }
 
 /* R k (10 - 14 k + 5 k^2) / (2 - k)^3 is what the linear recursion gives: sum of the squared response. */
-static void test_the_variance_told_is_that_of_the_member_shown(void)
+static void test_the_variance_reported_is_that_of_the_member_shown(void)
 {
     for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
         filter_t f = made_at_rest(0);
@@ -163,6 +163,6 @@ int main(void)
     RUN_TEST(test_members_are_fading_memories);
     RUN_TEST(test_the_memory_grows_by_half_a_sample_per_sample);
     RUN_TEST(test_a_gap_stops_a_rate_within_two_of_its_sigmas);
-    RUN_TEST(test_the_variance_told_is_that_of_the_member_shown);
+    RUN_TEST(test_the_variance_reported_is_that_of_the_member_shown);
     return UNITY_END();
 }

@@ -85,7 +85,7 @@ static void test_name_and_descriptor_agree(void)
     }
 }
 
-/* Configurations that init refuses, and the parameter that is told. */
+/* Init refuses the configuration and names the parameter. */
 static void assert_refused_for(filter_kind_t kind, const char *name, int32_t value)
 {
     filter_t f;
@@ -101,39 +101,67 @@ static void assert_refused_for(filter_kind_t kind, const char *name, int32_t val
     TEST_FAIL_MESSAGE(name);
 }
 
-/* What no filter that has the parameter takes, and how many have it at least. */
+/* A value that every filter with the parameter takes, one that none takes, and how many have it at least. */
 typedef struct {
     const char *name;
-    int32_t value;
+    int32_t legal;
+    int32_t illegal;
     unsigned by;
     uint8_t trait; /* only filters with it */
-} illegal_t;
+} edge_t;
 
-static const illegal_t illegal[] = {
-    { "q", 0, 9, 0 },
-    { "q", 1000000001, 9, 0 },
-    { "gate", 255, 4, 0 },              /* below 1 sigma */
-    { "gate", 0, 1, LAW_FIRST_SAMPLE }, /* as published: it cannot be switched off */
-    { "softgate", 255, 1, 0 },
-    { "softgate", 4097, 1, 0 },
-    { "reacquire", 10, 2, 0 },
-    { "ratemax", 0, 4, 0 },
-    { "clean", 0, 4, 0 }, /* a probability of 0 */
-    { "clean", 32767, 3, LAW_GATED },
-    { "clean", 65535, 3, LAW_GATED },
-    { "ratio", 255, 4, 0 },
-    { "ratio", 511, 3, LAW_GATED },
-    { "a1", -65536, 1, 0 },
-    { "a1", 65536, 1, 0 },
+static const edge_t edges[] = {
+    { "q", 1, 0, 9, 0 },
+    { "q", 1000000000, 1000000001, 9, 0 },
+    { "gate", 256, 255, 4, 0 },              /* 1 sigma */
+    { "gate", 256, 0, 1, LAW_FIRST_SAMPLE }, /* as published: it cannot be switched off */
+    { "gate", 4096, 4097, 4, 0 },
+    { "softgate", 0, 255, 1, 0 },
+    { "softgate", 4096, 4097, 1, 0 },
+    { "reacquire", 9, 10, 2, 0 },
+    { "ratemax", 10, 9, 6, 0 },
+    { "ratemax", 1000000, 1000001, 6, 0 },
+    { "clean", 55706, 0, 4, 0 }, /* a probability of 0 */
+    { "clean", 32768, 32767, 3, LAW_GATED },
+    { "clean", 65470, 65471, 3, LAW_GATED },
+    { "ratio", 5120, 255, 4, 0 },
+    { "ratio", 512, 511, 3, LAW_GATED },
+    { "a1", -65535, -65536, 1, 0 },
+    { "a1", 65535, 65536, 1, 0 },
+    { "b0", 656, 655, 2, 0 },
+    { "b0", 65535, 65536, 2, 0 },
+    { "b1", -65535, -65536, 1, 0 },
+    { "b1", 65535, 65536, 1, 0 },
+    { "b2", -65535, -65536, 1, 0 },
+    { "b2", 65535, 65536, 1, 0 },
+    { "k", 8, 9, 1, 0 },
+    { "u", 1, 2, 1, 0 },
+    { "p0", 3, 2, 1, 0 },
+    { "p0", 25600000, 25600001, 1, 0 },
+    { "guard", 0, 255, 1, 0 },
+    { "guard", 256, 255, 1, 0 },
+    { "guard", 4096, 4097, 1, 0 },
+    { "identify", 1, 2, 1, 0 },
+    { "slow", 10, 0, 2, 0 },
+    { "slow", 10, 9, 1, LAW_FINE_RATE }, /* the slowest memory of a single filter */
+    { "slow", 60000, 60001, 2, 0 },
+    { "middle", 1, 0, 1, 0 },
+    { "middle", 60000, 60001, 1, 0 },
+    { "fast", 1, 0, 2, 0 },
+    { "fast", 60000, 60001, 2, 0 },
+    { "confirm", 0, -1, 1, 0 },
+    { "confirm", 10000, 10001, 1, 0 },
 };
 
-static unsigned refused_by_all(const illegal_t *row)
+static unsigned judged_by_all(const edge_t *row)
 {
     unsigned count = 0;
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
-        bool meant = (filter_listed((filter_kind_t)kind)->traits & row->trait) == row->trait;
-        if (meant && parameter_named((filter_kind_t)kind, row->name) != FILTER_PARAMETERS_MAX) {
-            assert_refused_for((filter_kind_t)kind, row->name, row->value);
+        const filter_law_t *law = filter_listed((filter_kind_t)kind);
+        uint8_t place = parameter_named((filter_kind_t)kind, row->name);
+        if ((law->traits & row->trait) == row->trait && place != FILTER_PARAMETERS_MAX) {
+            TEST_ASSERT_TRUE_MESSAGE(filter_in_range(filter_parameter(law, place), row->legal), row->name);
+            assert_refused_for((filter_kind_t)kind, row->name, row->illegal);
             count++;
         }
     }
@@ -146,8 +174,8 @@ static void test_a_refusal_names_the_parameter(void)
         assert_refused_for((filter_kind_t)kind, "r", 0);
         assert_refused_for((filter_kind_t)kind, "r", FILTER_R_MAX_LSB2_Q8 + 1);
     }
-    for (size_t i = 0; i < sizeof illegal / sizeof illegal[0]; i++) {
-        TEST_ASSERT_TRUE_MESSAGE(refused_by_all(&illegal[i]) >= illegal[i].by, illegal[i].name);
+    for (size_t i = 0; i < sizeof edges / sizeof edges[0]; i++) {
+        TEST_ASSERT_TRUE_MESSAGE(judged_by_all(&edges[i]) >= edges[i].by, edges[i].name);
     }
 }
 

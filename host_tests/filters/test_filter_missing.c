@@ -99,7 +99,7 @@ static void test_a_gap_stops_only_a_rate_that_may_be_noise(void)
 }
 
 /* Halved with its variance: the sample behind a gap is believed less than without, so its noise makes no jump. */
-static void test_damp_leaves_less_gain_behind_a_gap(void)
+static void test_damp_leaves_less_gain_after_a_gap(void)
 {
     FOR_EACH_KIND(kind)
     {
@@ -143,7 +143,7 @@ static void test_a_missing_sample_leaves_a_start_alone(void)
 }
 
 /* Whatever it went through: from the next sample on it is a filter that was begun just now. */
-static void test_restart_is_as_begun_just_now(void)
+static void test_restart_is_as_after_init(void)
 {
     FOR_EACH_KIND(kind)
     {
@@ -183,7 +183,7 @@ static uint16_t restarts_at_the_rail(filter_t *f, uint8_t kind, bool missing)
 }
 
 /* Those that gate; the others take a sample at the rail as any other. */
-static void test_samples_told_as_missing_restart_no_filter(void)
+static void test_samples_reported_missing_restart_no_filter(void)
 {
     FOR_EACH_KIND(kind)
     {
@@ -196,7 +196,7 @@ static void test_samples_told_as_missing_restart_no_filter(void)
 }
 
 /* The samples at the rail do not count: it takes those of a run to restart. */
-static void test_a_filter_restarts_behind_the_rail(void)
+static void test_a_filter_restarts_after_the_rail(void)
 {
     FOR_EACH_KIND(kind)
     {
@@ -276,11 +276,11 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_damp_halves_the_rate_and_moves_nothing);
     RUN_TEST(test_a_gap_stops_only_a_rate_that_may_be_noise);
-    RUN_TEST(test_damp_leaves_less_gain_behind_a_gap);
+    RUN_TEST(test_damp_leaves_less_gain_after_a_gap);
     RUN_TEST(test_a_missing_sample_leaves_a_start_alone);
-    RUN_TEST(test_restart_is_as_begun_just_now);
-    RUN_TEST(test_samples_told_as_missing_restart_no_filter);
-    RUN_TEST(test_a_filter_restarts_behind_the_rail);
+    RUN_TEST(test_restart_is_as_after_init);
+    RUN_TEST(test_samples_reported_missing_restart_no_filter);
+    RUN_TEST(test_a_filter_restarts_after_the_rail);
     RUN_TEST(test_missing_samples_do_not_count_in_a_run);
     RUN_TEST(test_a_reset_ends_the_hold);
     return UNITY_END();

@@ -318,7 +318,7 @@ static void covariance_stays_one_for_ever(void)
 }
 
 /* As the filter: x at its own rounding, the variance P11 R. */
-static void probe_tells_the_variance(void)
+static void probe_reports_the_variance(void)
 {
     filter_config_t config = { 1000, { [KF3_R_LSB2_Q8] = 16 * 256, [KF3_Q_LSB2_S5] = 300000 } };
     filter_t f;
@@ -386,7 +386,7 @@ int main(void)
     RUN_TEST(estimate_equals_the_reference);
     RUN_TEST(gaps_equal_the_reference);
     RUN_TEST(covariance_stays_one_for_ever);
-    RUN_TEST(probe_tells_the_variance);
+    RUN_TEST(probe_reports_the_variance);
     RUN_TEST(kf3_sums_are_as_stated);
     return UNITY_END();
 }

@@ -149,7 +149,7 @@ static void estimate_equals_the_reference(void)
     }
 }
 
-static void probe_tells_the_variance(void)
+static void probe_reports_the_variance(void)
 {
     filter_config_t config = { 1000, { [KF_R_LSB2_Q8] = 16 * 256, [KF_Q_LSB2_S3] = 10000 } };
     filter_t f;
@@ -196,7 +196,7 @@ int main(void)
     RUN_TEST(reference_follows_the_golden_rows);
     RUN_TEST(gains_equal_the_reference);
     RUN_TEST(estimate_equals_the_reference);
-    RUN_TEST(probe_tells_the_variance);
+    RUN_TEST(probe_reports_the_variance);
     RUN_TEST(as_good_as_in_double_on_its_own_model);
     return UNITY_END();
 }

@@ -92,7 +92,7 @@ static void mean_variance_ends_at_its_limit(void)
 }
 
 /* Warming up the probe tells R_L for the variance of a sample: here 5 x 3 LSB^2. */
-static void probe_tells_the_mean_variance(void)
+static void probe_reports_the_mean_variance(void)
 {
     filter_config_t config = config_100hz();
     config.value[LRF_R_LSB2_Q8] = 3U * 256U;
@@ -112,6 +112,6 @@ int main(void)
     RUN_TEST(with_ratio_1_it_is_the_kalman_filter);
     RUN_TEST(it_is_the_kalman_filter_of_the_mean_variance);
     RUN_TEST(mean_variance_ends_at_its_limit);
-    RUN_TEST(probe_tells_the_mean_variance);
+    RUN_TEST(probe_reports_the_mean_variance);
     return UNITY_END();
 }

@@ -45,7 +45,7 @@ static void outlier_moves_the_estimate_by_its_small_gain(void)
 }
 
 /* The posterior decides: at 1 sigma p = 0.98, at 10 p = 0; 1/2 where b t / 2 = ln(0.85 / 0.15) + ln(S_N / S) / 2. */
-static void flag_tells_more_likely_an_outlier_than_not(void)
+static void flag_means_more_likely_an_outlier_than_not(void)
 {
     filter_t f = settled(0);
     filter_t near = f;
@@ -143,7 +143,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(defaults_are_the_papers);
     RUN_TEST(outlier_moves_the_estimate_by_its_small_gain);
-    RUN_TEST(flag_tells_more_likely_an_outlier_than_not);
+    RUN_TEST(flag_means_more_likely_an_outlier_than_not);
     RUN_TEST(doubt_makes_p_grow);
     RUN_TEST(step_of_100_sigma_is_followed_within_800_samples);
     RUN_TEST(every_second_sample_an_outlier_does_not_lead_it_away);

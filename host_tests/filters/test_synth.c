@@ -123,7 +123,7 @@ static void start_ends_at_the_first_gain_that_is_not_above(void)
 }
 
 /* What a person reads: value / 2^fraction bits is 0.3, -0.3, 3 LSB^2 (to the last bit of the format). */
-static void descriptor_tells_the_binary_points(void)
+static void descriptor_has_the_binary_points(void)
 {
     filter_config_t config = of_paper_001();
     TEST_ASSERT_EQUAL_UINT8(4, parameter_count(FILTER_KIND_synth));
@@ -272,7 +272,7 @@ static void coast_before_any_sample_is_zero(void)
  * R = 3 LSB^2: one sample's variance in the start, then 0.548387 x 3 = 1.645 (421 / 256) at (0, 0.3), 0.822358 x 3 at
  * the paper's.
  */
-static void probe_tells_the_variance(void)
+static void probe_reports_the_variance(void)
 {
     filter_probe_t probe;
     filter_t f;
@@ -333,7 +333,7 @@ int main(void)
     RUN_TEST(start_on_a_ramp_catches_up);
     RUN_TEST(start_gains_are_those_of_a_line);
     RUN_TEST(start_ends_at_the_first_gain_that_is_not_above);
-    RUN_TEST(descriptor_tells_the_binary_points);
+    RUN_TEST(descriptor_has_the_binary_points);
     RUN_TEST(one_sample_turns_the_rate_up_to_its_limit);
     RUN_TEST(bent_predictions_are_limited_too);
     RUN_TEST(outliers_in_the_start_cost_nothing);
@@ -342,7 +342,7 @@ int main(void)
     RUN_TEST(coast_bends_with_a1_up_to_the_bound);
     RUN_TEST(coast_in_the_start_does_not_count);
     RUN_TEST(coast_before_any_sample_is_zero);
-    RUN_TEST(probe_tells_the_variance);
+    RUN_TEST(probe_reports_the_variance);
     RUN_TEST(overshoot_beyond_the_format_is_flagged);
     RUN_TEST(damp_bends_nothing);
     return UNITY_END();

@@ -111,7 +111,7 @@ static void make(filter_t *f, bool u, double ratio)
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_synth_opt, &config));
 }
 
-/* Gains of the steps of class i: its own first four, then those of 16, then the limit; a1 told by a bend of 3000. */
+/* Gains of the steps of class i: its own first four, then those of 16, then the limit; a1 found by a bend of 3000. */
 static reference_gains_t expected_gains(bool u, double own_ratio, int step)
 {
     double ratio = step < 4 ? own_ratio : 16.0;
@@ -360,7 +360,7 @@ static void roll_experiment_has_the_errors_of_the_notes(void)
 }
 
 /* Variance that the probe tells in the limit against that of 200,000 samples: 2/3 R and, of U, 0.8059 R. */
-static void probe_tells_the_true_variance(void)
+static void probe_reports_the_true_variance(void)
 {
     test_random_t random;
     random_seed(&random, SEED + 5);
@@ -394,6 +394,6 @@ int main(void)
     RUN_TEST(fixed_point_switches_as_the_reference);
     RUN_TEST(estimate_equals_the_reference);
     RUN_TEST(roll_experiment_has_the_errors_of_the_notes);
-    RUN_TEST(probe_tells_the_true_variance);
+    RUN_TEST(probe_reports_the_true_variance);
     return UNITY_END();
 }

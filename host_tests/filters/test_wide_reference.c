@@ -191,7 +191,7 @@ static void runs_agree_with_double(void)
 }
 
 /*
- * Equation (11): told that outliers come in runs of mean length 5 a law agrees with double, and does better by a
+ * Equation (11): set to outliers in runs of mean length 5 a law agrees with double, and does better by a
  * twentieth.
  */
 static void a_chain_of_outliers_is_expected(void)

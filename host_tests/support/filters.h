@@ -1,6 +1,6 @@
 /*
  * What the generic tests of lib/filters share, on the PC and on the chip (no double, no 64-bit numbers): random
- * numbers, configurations from the descriptors, and the facts about single laws that no descriptor tells.
+ * numbers, configurations from the descriptors, and the facts about single laws that no descriptor has.
  */
 #ifndef SUPPORT_FILTERS_H
 #define SUPPORT_FILTERS_H
@@ -65,12 +65,12 @@ bool init_default(filter_t *f, filter_kind_t kind, uint16_t rate_dhz);
 void random_config(uint32_t *random, filter_kind_t kind, filter_config_t *config);
 
 /*
- * A filter begun with a random legal configuration. Draws again when init refuses and the filter may do so with every
+ * A filter with a random legal configuration. Draws again when init refuses and the filter may do so with every
  * parameter in range; *refused counts these. False: refused although no such condition exists, or always.
  */
 bool init_random(filter_t *f, filter_kind_t kind, uint32_t *random, uint32_t *refused);
 
-/* Whatever was called before: the estimate as the probe tells it. */
+/* Whatever was called before: the estimate as the probe reports it. */
 int32_t estimate_of(const filter_t *f);
 
 /* NULL, or the name of what is outside the bounds that filter.h and the law's own file promise after a call. */
@@ -102,14 +102,14 @@ typedef struct {
 /* The largest ratemax: up to 217 Hz above the bound of a rate, 4608 LSB a sample. */
 enum { RATE_UNLIMITED_LSB_S = 1000000 };
 
-/* What no descriptor tells of a law: support_law_NAME.c has them. */
+/* What no descriptor has of a law: support_law_NAME.c has them. */
 typedef struct {
     int32_t mirror_lsb_q16;    /* largest difference between the answers to a sequence and to its mirror image */
     uint16_t recovery_samples; /* after which a filter that predicted is back, with default parameters at 100 Hz */
     bool joint_condition;      /* init may refuse a configuration whose parameters are each in range */
     bool gated_means_unused;   /* a sample flagged FILTER_GATED is not used at all; else it may count a little */
     bool starts_with_median;   /* with the running median of filter.h; else with the first sample ("as published") */
-    bool restarts;             /* begins anew on samples that stay away */
+    bool restarts;             /* restarts on samples that stay away */
     bool learns;               /* its noise, or the share of outliers: a restart keeps that */
     bool rate_is_a_difference; /* of two estimates: at rest 314 and 589 degrees a second at 800 Hz */
     bool switches;             /* FILTER_SWITCHED may be set */

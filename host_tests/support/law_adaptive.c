@@ -15,7 +15,7 @@ static const char *broken_adaptive_memory(const filter_t *f)
 }
 
 /*
- * adaptive.c: the sigma is that of the R it was told (at most 31.7 LSB) or between 0.1 and 90 LSB, memory between 3.3
+ * adaptive.c: the sigma is that of the R that was set (at most 31.7 LSB) or between 0.1 and 90 LSB, memory between 3.3
  * and 4096 samples, a gate of 16 times 256 LSB; mean and gate lie where the samples of the start were.
  */
 const char *broken_adaptive(const filter_t *f)

@@ -134,7 +134,7 @@ static void test_sigmas_of_the_table(void)
 }
 
 /* 4 mg over the component: 1 / cos and 1 / sin to first order; nothing is known where nothing is left. */
-static void test_the_sigma_told(void)
+static void test_the_sigma_reported(void)
 {
     uint16_t sigma_q8 = (uint16_t)lrint(0.004 * G_Q8);
     for (int deg = 0; deg < 90; deg++) {
@@ -200,7 +200,7 @@ int main(void)
     RUN_TEST(test_both_angles_on_the_sphere);
     RUN_TEST(test_the_sign_is_that_of_the_last_good_sample);
     RUN_TEST(test_sigmas_of_the_table);
-    RUN_TEST(test_the_sigma_told);
+    RUN_TEST(test_the_sigma_reported);
     RUN_TEST(test_the_missing_component_is_within_its_bound);
     RUN_TEST(test_more_than_gravity_leaves_nothing);
     return UNITY_END();

@@ -99,13 +99,17 @@ def linked_as_cpp(folder):
 COMPILERS = [("avr-gcc", "c", "c11"), ("avr-g++", "c++", "gnu++11"), ("gcc", "c", "c11"), ("g++", "c++", "gnu++11"), ("g++", "c++", "gnu++20")]
 
 
-def header_refused(folder, header):
-    """Compilers that do not take a header by itself, and what they say."""
-    text = f'#include "{header}"\n#include "{header}"\nint main(void) {{ return 0; }}\n'
+def refused(text, folder=LIBRARY, *flags):
+    """Compilers that do not take a program, and what they say."""
     return [(compiler, done.stderr) for compiler, language, standard in COMPILERS if shutil.which(compiler)
-            for done in [subprocess.run([compiler, f"-std={standard}", "-x", language, "-Wall", "-Wextra", "-Werror", "-fsyntax-only",
+            for done in [subprocess.run([compiler, f"-std={standard}", "-x", language, "-Wall", "-Wextra", "-Werror", *flags, "-fsyntax-only",
                                          f"-I{folder / 'src'}", "-", *(["-mmcu=atmega328p"] if compiler.startswith("avr") else [])],
                                         input=text, capture_output=True, text=True)] if done.returncode != 0]
+
+
+def header_refused(folder, header):
+    """Compilers that do not take a header by itself."""
+    return refused(f'#include "{header}"\n#include "{header}"\nint main(void) {{ return 0; }}\n', folder)
 
 
 @test
@@ -118,8 +122,8 @@ def every_header_is_c11_and_cpp11_by_itself():
         copy = pathlib.Path(shutil.copytree(LIBRARY, pathlib.Path(folder, LIBRARY.name)))
         with open(copy / "src/tilt_axis.h", "a", encoding="utf-8") as header:
             header.write("static inline void *this_is_c(void *p) { char *class = p; return class; }\n")
-        refused = {compiler for compiler, _ in header_refused(copy, "tilt_filter.h")}
-        assert refused == {compiler for compiler, language, _ in COMPILERS if language == "c++" and shutil.which(compiler)}, refused
+        which = {compiler for compiler, _ in header_refused(copy, "tilt_filter.h")}
+        assert which == {compiler for compiler, language, _ in COMPILERS if language == "c++" and shutil.which(compiler)}, which
 
 
 @test
@@ -132,6 +136,26 @@ def every_function_has_c_linkage():
         header.write_text(text, encoding="utf-8")
         done = linked_as_cpp(copy)
         assert done.returncode != 0 and "undefined reference to `filter_noise_update" in done.stderr, done.stderr
+
+
+# of the program that a reader puts the snippets into
+READERS = "extern int16_t ax, ay, az, sample;\nvoid use(int16_t roll, int16_t pitch, uint16_t flags);"
+
+
+def snippets_as_programs(page):
+    """Each C snippet of a page, which begins with its includes, inside a function."""
+    snippets = re.findall(r"^```c\n((?:#include [^\n]*\n)*)(.*?)^```", page, re.M | re.S)
+    return [f"{includes}{READERS}\nint main(void)\n{{\n{body}return 0;\n}}\n" for includes, body in snippets]
+
+
+@test
+def the_snippets_of_the_readme_compile():
+    programs = snippets_as_programs((LIBRARY / "README.md").read_text(encoding="utf-8"))
+    assert len(programs) == 2 and all("#include" in program for program in programs)
+    for program in programs:
+        found = refused(program, LIBRARY, "-Wno-unused-but-set-variable")
+        assert found == [], found
+    assert len(refused(programs[1].replace("filter_noise_update(", "noise_update("))) == sum(shutil.which(c) is not None for c, _, _ in COMPILERS)
 
 
 def library():

@@ -14,8 +14,9 @@
  *   if (filter_init(&f, &filter_law_sprf, &config) != FILTER_ACCEPTED) { ... }
  *   int32_t x_lsb_q16 = filter_update(&f, sample);
  *
- * filter_t is plain data without pointers to RAM: copy it, compare it, dump it. Nothing here does I/O, allocates, uses
- * float or blocks. Every function may be called from main or from an interrupt, by one caller at a time per filter_t.
+ * Every function that takes a filter_t, except filter_init, needs one that filter_init has accepted. It is plain data
+ * without pointers to RAM: copy it, compare it, dump it. Nothing here does I/O, allocates, uses float or blocks. Every
+ * function may be called from main or from an interrupt, by one caller at a time per filter_t.
  */
 #ifndef FILTER_H
 #define FILTER_H
@@ -54,7 +55,7 @@ enum filter_flag {
     FILTER_COASTED = 0x02,    /* no sample: the output is a prediction */
     FILTER_REACQUIRED = 0x04, /* restarted from consistent refused samples */
     FILTER_SATURATED = 0x08,  /* a state was clamped to its bound */
-    FILTER_WARMING_UP = 0x10, /* fewer than FILTER_WARM_UP_SAMPLES since init */
+    FILTER_WARMING_UP = 0x10, /* one of the samples that a start collects: after init and after a restart */
     FILTER_SWITCHED = 0x20    /* a filter made of several has switched to another of them (`auto`) */
 };
 
@@ -169,7 +170,7 @@ void filter_set_defaults(filter_config_t *config, const filter_law_t *law, uint1
 
 /*
  * Sets up a filter, which then begins to warm up. The configuration is checked first: any answer but FILTER_ACCEPTED
- * says what is wrong, and f is unchanged. Divides: up to 10,000 cycles.
+ * says what is wrong, and f is unchanged. Divides: up to 10,500 cycles.
  */
 filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_config_t *config);
 
@@ -181,12 +182,11 @@ void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8);
 
 /*
  * The R that a law has identified itself, LSB^2 in Q8, at most 10,200 LSB^2. Such a law needs no filter_set_noise and
- * no noise estimate beside it. 0: the law uses the R that is set. Only for a filter that filter_init has accepted.
- * About 80 cycles.
+ * no noise estimate beside it. 0: the law uses the R that is set. About 80 cycles.
  */
 uint32_t filter_own_noise_lsb2_q8(const filter_t *f);
 
-/* Runs as if z0 had always been read; no warm-up. Takes as long as 16 updates at most. */
+/* Runs as if z0 had always been read; no warm-up. Takes about as long as 16 updates at most. */
 void filter_reset(filter_t *f, int16_t z0_lsb);
 
 /*
@@ -218,7 +218,8 @@ void filter_probe(const filter_t *f, filter_probe_t *out);
 /* Facts of a law, from its descriptor in program memory. */
 const char *filter_name(const filter_law_t *law); /* in program memory, as typed in `filter NAME` */
 uint8_t filter_parameter_count(const filter_law_t *law);
-const filter_parameter_t *filter_parameter(const filter_law_t *law, uint8_t index); /* in program memory */
+/* In program memory; index is below filter_parameter_count. */
+const filter_parameter_t *filter_parameter(const filter_law_t *law, uint8_t index);
 /* The parameter's name, NUL-terminated, followed by its unit. Both in program memory. */
 const char *filter_parameter_words(const filter_parameter_t *parameter);
 /* Upper bound of filter_update on an ATmega328P; `stay` of pbf and shrf costs 500 more. */

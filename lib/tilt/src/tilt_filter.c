@@ -47,10 +47,12 @@ filter_answer_t tilt_filter_use(tilt_filter_t *t, const filter_law_t *law, const
     wanted.rate_dhz = t->rate_dhz;
     for (uint8_t axis = 0; axis < (uint8_t)TILT_FILTER_AXES; axis++) {
         tilt_axis_t *a = &t->axes[axis];
+        int32_t x_lsb_q16 = a->filter.x_lsb_q16;
         filter_answer_t answer = filter_init(&a->filter, law, &wanted);
         if (answer != FILTER_ACCEPTED) {
             return answer; /* for the first axis; the same for all */
         }
+        a->filter.x_lsb_q16 = x_lsb_q16; /* until the next sample */
         tilt_axis_begin(a, t->rate_dhz, axis == 2U);
     }
     t->flags = TILT_WARMING_UP;
@@ -71,6 +73,10 @@ bool tilt_filter_begin_with(tilt_filter_t *t, uint16_t rate_hz, const filter_law
     t->angles.roll_cdeg = 0;
     t->angles.pitch_cdeg = 0;
     t->angles.roll_undefined = false;
+    for (uint8_t axis = 0; axis < (uint8_t)TILT_FILTER_AXES; axis++) {
+        t->a_q8[axis] = 0;
+        t->axes[axis].filter.x_lsb_q16 = 0;
+    }
     t->shift = 0;
     t->rail_high_lsb = highest_of(FILTER_BITS);
     (void)set_scale(t, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);

@@ -7,10 +7,12 @@
  *   tilt_filter_update(&tilt, ax, ay, az);         // every 10 ms; without a sample: tilt_filter_missing(&tilt)
  *   show(tilt.angles.roll_cdeg, tilt.angles.pitch_cdeg, tilt.flags);
  *
- * Angles and flags are those of this project's firmware, bit for bit. Readings are those of the ADXL345 in full
- * resolution, 13 bits: -4096..4095 LSB of 1/256 g; see tilt_filter_sensor for others. A reading at the end of its range
- * or beyond is flagged TILT_CLIPPED. Axes as on the ADXL345: roll = atan2(y, z), pitch = atan2(-x, sqrt(y^2 + z^2)).
- * Plain data, 400 bytes on an AVR; one caller at a time, from main or from an interrupt.
+ * On the same samples, at the nominal rate, angles and flags are those of this project's firmware, bit for bit; the
+ * firmware also measures the true rate, and restarts its filters after a stuck sensor. Readings are those of the
+ * ADXL345 in full resolution, 13 bits: -4096..4095 LSB of 1/256 g; see tilt_filter_sensor for others. A reading at the
+ * end of its range or beyond is flagged TILT_CLIPPED and counts as missing. Axes as on the ADXL345: roll = atan2(y, z),
+ * pitch = atan2(-x, sqrt(y^2 + z^2)). Plain data, 405 bytes on an AVR; one caller at a time, from main or from an
+ * interrupt.
  */
 #ifndef TILT_FILTER_H
 #define TILT_FILTER_H
@@ -38,9 +40,10 @@ typedef struct {
 } tilt_filter_t;
 
 /*
- * Selects another law than `adaptive`, or other parameters than its defaults (NULL: the defaults; the rate is the
- * facade's, and R is estimated). Filters and noise estimates restart. Returns FILTER_ACCEPTED, or what is wrong
- * (filter.h), in which case nothing is changed. Up to 30,000 cycles.
+ * After a start: selects another law than `adaptive`, or other parameters than its defaults (NULL: the defaults; the
+ * rate is the facade's, and R is estimated). Filters and noise estimates restart; the angles stay until the next
+ * sample. Returns FILTER_ACCEPTED, or what is wrong (filter.h), in which case nothing is changed. Up to 45,000 cycles;
+ * a start takes as long.
  */
 filter_answer_t tilt_filter_use(tilt_filter_t *t, const filter_law_t *law, const filter_config_t *config);
 
@@ -48,8 +51,8 @@ filter_answer_t tilt_filter_use(tilt_filter_t *t, const filter_law_t *law, const
 bool tilt_filter_begin_with(tilt_filter_t *t, uint16_t rate_hz, const filter_law_t *law);
 
 /*
- * Starts with the law `adaptive` and an ADXL345 at 3.3 V. rate_hz: samples per second; outside 5..4000 returns false
- * and uses the nearest legal rate.
+ * Starts with the law `adaptive` and an ADXL345 at 3.3 V. rate_hz: samples per second, rounded; outside 5..4000
+ * returns false and uses the nearest legal rate.
  */
 static inline bool tilt_filter_begin(tilt_filter_t *t, uint16_t rate_hz)
 {
@@ -67,7 +70,8 @@ bool tilt_filter_sensor(tilt_filter_t *t, uint8_t bits, uint16_t xy_lsb_per_g, u
 
 /*
  * Sets offsets, scales, axes and mounting as found by the firmware's calibration; returns the verdict, not good if one
- * is not legal.
+ * is not legal, in which case nothing is changed. In the LSB of the shifted readings; call it after tilt_filter_sensor,
+ * which replaces a calibration.
  */
 calibration_verdict_t tilt_filter_calibrate(tilt_filter_t *t, const calibration_t *calibration);
 
