@@ -24,7 +24,7 @@ WRITTEN = {"lib/filters/keywords.txt",  # by host_tests/tools/scripts/arduino_ru
 # `auto` is a word of these languages too: there it counts in quotes
 HAVE_AUTO = {".cpp", ".hpp", ".html"}
 # and a value of the setting address, of the compiler's and of the plotter's options
-NO_FILTER = re.compile(r'address auto|auto 53 1D|-flto=auto|aspect="auto"')
+NO_FILTER = re.compile(r'address auto|auto 53 1D|i2c auto|auto 100 400|-flto=auto|aspect="auto"')
 
 
 def named(words):

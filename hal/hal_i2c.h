@@ -29,8 +29,11 @@ enum hal_i2c_status {
 /* The bus lines while no master uses them. */
 enum hal_i2c_lines { HAL_I2C_FREE, HAL_I2C_SCL_LOW, HAL_I2C_SDA_LOW };
 
-/* Takes the pins. SCL is 363.6 kHz (tLOW 1.375 us, within the ADXL345's spec), or 400 kHz if fast. */
-void hal_i2c_enable(bool fast);
+/* Periods of SCL in 0.25 us: 363.6 kHz, with tLOW 1.375 us within the ADXL345's specification, 400 and 100 kHz. */
+enum { HAL_I2C_364_KHZ = 11, HAL_I2C_400_KHZ = 10, HAL_I2C_100_KHZ = 40 };
+
+/* Takes the pins; SCL has this period. */
+void hal_i2c_enable(uint8_t period_025us);
 
 /* Releases the pins at once; a transfer in progress is abandoned. */
 void hal_i2c_disable(void);

@@ -22,7 +22,7 @@
 #include "settings/settings_table.h"
 
 _Static_assert(TEXT_KEPT_CALIBRATION - TEXT_KEPT_DAMAGED == KEPT_CALIBRATION - KEPT_DAMAGED, "words for what was kept");
-_Static_assert(TEXT_OTHER_PART - TEXT_NO_SENSOR == FAULT_OTHER_PART - 1, "words for each fault");
+_Static_assert(TEXT_I2C_SLOWED - TEXT_NO_SENSOR == FAULT_I2C_SLOWED - 1, "words for each fault");
 _Static_assert(TEXT_WATCHDOG - TEXT_POWER_ON == HAL_RESET_WATCHDOG, "words for each cause");
 _Static_assert(TEXT_STATE_FAULTY - TEXT_STATE_STOPPED == ADXL345_FAULTY, "words for each phase");
 
@@ -154,6 +154,13 @@ static uint8_t text_chosen(said_t *said, uint8_t what)
     }
 }
 
+/* 800 Hz needs 400 kHz, where tLOW is 1.25 us instead of the 1.3 us of both data sheets. */
+static void say_bus_khz(void)
+{
+    uint16_t dkhz = adxl345_i2c_slow() ? 1000 : 3636;
+    text_tenths(settings()->rate_dhz == 8000 ? 4000 : dkhz);
+}
+
 /* Codes that are neither a text nor one of many numbers. */
 static void say_other(said_t *said, uint8_t what)
 {
@@ -182,8 +189,8 @@ static void say_other(said_t *said, uint8_t what)
     case SAY_MEASURED:
         say_hundredths(adxl345_rate_chz());
         break;
-    case SAY_BUS_KHZ: /* 800 Hz needs 400 kHz, where tLOW is 1.25 us instead of the 1.3 us of both data sheets */
-        text_tenths(settings()->rate_dhz == 8000 ? 4000 : 3636);
+    case SAY_BUS_KHZ:
+        say_bus_khz();
         break;
     case SAY_POSITION:
         text_char((said->subject & 1u) != 0 ? '-' : '+');

@@ -28,6 +28,7 @@ static void start_sensor(void)
 {
     adxl345_config_t config = { settings()->rate_dhz, settings()->range_g, false, settings()->address };
     measure_configure(&config);
+    adxl345_set_i2c((adxl345_i2c_t)settings()->i2c);
     adxl345_start(&config);
 }
 

@@ -22,8 +22,14 @@ static const uint8_t flashes[] IN_FLASH = {
     [ADXL345_FAULT_READ_BACK] = 2,     [ADXL345_FAULT_INT1_SILENT] = 3, [ADXL345_FAULT_NO_DATA] = 2,
     [ADXL345_FAULT_SCL_LOW] = 1,       [ADXL345_FAULT_SDA_LOW] = 1,     [ADXL345_FAULT_INT1_STUCK] = 3,
     [ADXL345_FAULT_STUCK] = 4,         [ADXL345_FAULT_TORN] = 4,        [ADXL345_FAULT_TWO_SENSORS] = 4,
-    [ADXL345_FAULT_INT1_FLICKERS] = 3, [FAULT_OTHER_PART] = 4,
+    [ADXL345_FAULT_INT1_FLICKERS] = 3, [FAULT_OTHER_PART] = 4,          [FAULT_I2C_SLOWED] = 1,
 };
+
+/* A fault that stands beside the outage and costs no sample: has had its first line, at: */
+typedef struct {
+    bool told;
+    uint32_t since_s;
+} beside_t;
 
 typedef struct {
     uint32_t began_us; /* start of the outage; the counters at that time: */
@@ -33,9 +39,8 @@ typedef struct {
     uint16_t reported_mask; /* fault codes reported during the outage: each once */
     uint8_t newest;         /* its newest fault code; NONE: no outage */
     bool over;              /* the outage is over, and the line that reports it is not queued yet */
-    uint8_t shown;          /* the fault in force, with FAULT_OTHER_PART */
-    bool part_reported;     /* FAULT_OTHER_PART, which is beside the outage, has had its first line, at: */
-    uint32_t part_s;
+    beside_t part;          /* FAULT_OTHER_PART */
+    beside_t slowed;        /* FAULT_I2C_SLOWED */
 } watch_t;
 
 static watch_t watch;
@@ -48,7 +53,14 @@ const sensor_outage_t *sensor_watch_outage(void)
 
 uint8_t sensor_watch_fault(void)
 {
-    return watch.shown;
+    uint8_t fault = (uint8_t)adxl345_fault();
+    if (fault == ADXL345_FAULT_NONE && gravity_absent()) {
+        fault = FAULT_OTHER_PART;
+    }
+    if (fault == ADXL345_FAULT_NONE && adxl345_i2c_fell_back()) {
+        fault = FAULT_I2C_SLOWED;
+    }
+    return fault;
 }
 
 /* Nothing is reported about the time before. */
@@ -120,25 +132,27 @@ void sensor_watch_start(uint32_t now_us)
 {
     forget();
     if (!MACHINE_RAM_CLEARED) {
-        watch.part_reported = false;
+        watch.part.told = false;
+        watch.slowed.told = false;
     }
     note(&watch, (uint8_t)adxl345_fault(), now_us);
     watch.reported_mask = newest_bit();
 }
 
-/* It costs no sample; what is lost meanwhile is that of another fault. */
-static void tell_part(watch_t *w)
+/* What is lost meanwhile is that of another fault. True: `reported` is in use. */
+static MACHINE_APART bool tell_beside(beside_t *b, uint8_t fault, bool holds)
 {
-    bool told = w->part_reported;
-    if (told == gravity_absent() || !notices_add((notice_kind_t)(NOTICE_FAULT_BEGIN + told), FAULT_OTHER_PART)) {
-        return;
+    bool told = b->told;
+    if (told == holds || !notices_add((notice_kind_t)(NOTICE_FAULT_BEGIN + told), fault)) {
+        return false;
     }
-    w->part_reported = !told;
+    b->told = !told;
     if (told) {
-        reported = (sensor_outage_t){ whole_ms(w->part_s), 0, adxl345_address() };
+        reported = (sensor_outage_t){ whole_ms(b->since_s), 0, adxl345_address() };
     } else {
-        w->part_s = counted(COUNT_SECONDS);
+        b->since_s = counted(COUNT_SECONDS);
     }
+    return told;
 }
 
 /* Reports what was noted and is not reported yet; `reported` has room for one end. */
@@ -159,7 +173,10 @@ static void tell(watch_t *w)
             return;
         }
     }
-    tell_part(w);
+    /* while a fault lasts, the driver may be trying one speed after the other */
+    if (!tell_beside(&w->part, FAULT_OTHER_PART, gravity_absent()) && w->newest == ADXL345_FAULT_NONE) {
+        (void)tell_beside(&w->slowed, FAULT_I2C_SLOWED, adxl345_i2c_fell_back());
+    }
 }
 
 void sensor_watch_pass(uint32_t now_us)
@@ -169,14 +186,10 @@ void sensor_watch_pass(uint32_t now_us)
     uint8_t fault = (uint8_t)adxl345_fault();
     if (adxl345_phase() == ADXL345_STOPPED) { /* not repaired, just not polled */
         forget();
-        w->part_reported = false;
+        w->part.told = false;
         gravity_forget();
     }
     note(w, fault, now_us);
-    if (fault == ADXL345_FAULT_NONE && gravity_absent()) {
-        fault = FAULT_OTHER_PART;
-    }
-    w->shown = fault;
-    show(fault, now_us);
+    show(sensor_watch_fault(), now_us);
     tell(w);
 }

@@ -6,8 +6,11 @@
 
 #include "adxl345.h"
 
-/* The fault that is not one of the driver's (adxl345_fault_t): at rest the sensor does not read gravity. */
-enum { FAULT_OTHER_PART = ADXL345_FAULT_INT1_FLICKERS + 1 };
+/*
+ * Faults that are none of the driver's (adxl345_fault_t): at rest the sensor does not read gravity; I2C is slower than
+ * it could be (adxl345_i2c_fell_back).
+ */
+enum { FAULT_OTHER_PART = ADXL345_FAULT_INT1_FLICKERS + 1, FAULT_I2C_SLOWED };
 
 /* Call when rows start; a fault present by then was reported by the banner. */
 void sensor_watch_start(uint32_t now_us);
@@ -15,7 +18,7 @@ void sensor_watch_start(uint32_t now_us);
 /* Call every few ms, in passes that poll the driver. */
 void sensor_watch_pass(uint32_t now_us);
 
-/* The fault in force: the driver's if there is one, else FAULT_OTHER_PART or none. */
+/* The fault in force: the driver's if there is one, else one of these or none. */
 uint8_t sensor_watch_fault(void);
 
 /* The last fault whose end was reported: its duration, the samples lost, and the sensor's address after it. */

@@ -33,6 +33,7 @@ void settings_defaults_beside_calibration(void)
     settings_take_filter(0); /* the image's first one */
     settings()->mode = MODE_CSV;
     settings()->address = 0;
+    settings()->i2c = 0;
     settings_follow();
 }
 

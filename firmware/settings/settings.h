@@ -13,7 +13,7 @@
 typedef enum { MODE_CSV, MODE_PLOT } output_mode_t;
 
 /* Bytes that are saved; the image has room for what later versions add. */
-#define SETTINGS_KEPT_BYTES (13u + sizeof(calibration_t) + sizeof(filter_choice_t))
+#define SETTINGS_KEPT_BYTES (14u + sizeof(calibration_t) + sizeof(filter_choice_t))
 
 /*
  * Version of the saved bytes: raised when one of them changes its meaning. Version, length and calibration have the
@@ -33,6 +33,7 @@ typedef struct {
     uint8_t range_g;           /* 2, 4, 8, 16 */
     uint8_t mode;              /* output_mode_t */
     uint8_t address;           /* of the sensor, 7 bits; 0: whichever answers */
+    uint8_t i2c;               /* adxl345_i2c_t; FALLS_BACK in what an image without it has saved */
     uint8_t spare[STORE_IMAGE_SIZE - SETTINGS_KEPT_BYTES];
     uint8_t store_tail[STORE_TAIL_SIZE]; /* the store's own, see store.h */
     /* not saved */

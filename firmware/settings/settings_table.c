@@ -17,6 +17,7 @@ static const uint16_t choices[] IN_FLASH = {
     FILTER_LIST(KIND)
     MODE_CSV, MODE_PLOT,
     0, 0x53, 0x1D,                                /* address; 0: whichever answers */
+    0, 48, 32,                                    /* i2c: adxl345_i2c_t */
     125, 250, 500, 1000, 2000, 4000, 8000,        /* rate, 0.1 Hz */
     2, 4, 8, 16,                                  /* range */
     96, 192, 384, 576,                            /* baud, in hundreds */
@@ -43,7 +44,8 @@ enum { OFFSET_MAX = CALIBRATION_OFFSET_MAX_LSB_Q4, LEVEL_MAX_Q14 = 18841 }; /* 1
     X("every", "", every, 2, NUMBER, 0, 0, 1, SETTINGS_EVERY_MAX) \
     X("baud", "", baud, 4, LIST, 0, STARTS_LINE, BAUD, LISTED - BAUD) \
     X("mode", "", mode, 1, WORDS, 0, 0, WORD_MODE, WORD_ADDRESS - WORD_MODE) \
-    X("address", "", address, 1, WORDS, 0, STARTS_SENSOR, WORD_ADDRESS, WORDS_END - WORD_ADDRESS) \
+    X("address", "", address, 1, WORDS, 0, STARTS_SENSOR, WORD_ADDRESS, WORD_I2C - WORD_ADDRESS) \
+    X("i2c", "", i2c, 1, WORDS, 0, STARTS_SENSOR, WORD_I2C, WORDS_END - WORD_I2C) \
     X("axes", "", calibration.axes, 1, SIGNED_AXES, 0, STARTS_CALIBRATION, 0, 0) \
     X("offset", "LSB", calibration.offset_lsb_q4, 2, VECTOR, 4, STARTS_CALIBRATION, -OFFSET_MAX, OFFSET_MAX) \
     X("scale", "LSB/g", calibration.scale_lsb_per_g_uq6, 2, VECTOR, 6, STARTS_CALIBRATION, CALIBRATION_SCALE_MIN_UQ6, \

@@ -19,6 +19,7 @@ enum {
     SETTING_BAUD,
     SETTING_MODE,
     SETTING_ADDRESS,
+    SETTING_I2C,
     SETTING_AXES,
     SETTING_OFFSET, /* from here on numbers, which are shown with their legal range */
     SETTING_SCALE,

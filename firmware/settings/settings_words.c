@@ -5,7 +5,9 @@
 
 static const char words[] IN_FLASH = "csv\0plot\0auto\0"
                                      "53\0"
-                                     "1D";
+                                     "1D\0auto\0"
+                                     "100\0"
+                                     "400";
 
 flash_text_t settings_word(uint8_t place)
 {

@@ -11,8 +11,8 @@
 #include <avr/io.h>
 #include <util/delay.h>
 
-_Static_assert((16ul + 2ul * HAL_I2C_TWBR(2750)) * 1000000ul == F_CPU / 1000 * 2750, "SCL is exactly 363.6 kHz");
-_Static_assert((16ul + 2ul * HAL_I2C_TWBR(2500)) * 1000000ul == F_CPU / 1000 * 2500, "SCL is exactly 400 kHz");
+#define EXACT(period) ((16ul + 2ul * HAL_I2C_TWBR(period)) * 4000000ul == F_CPU * (period))
+_Static_assert(EXACT(HAL_I2C_364_KHZ) && EXACT(HAL_I2C_400_KHZ) && EXACT(HAL_I2C_100_KHZ), "SCL is exact");
 
 enum { CLOCKS_MAX = 16, STEP_US = 5 }; /* STEP_US: rise time of a line with 10 kOhm and 400 pF */
 

@@ -1,6 +1,6 @@
 /*
- * TWI of the ATmega328P (data sheet chapter 26). SCL is F_CPU / (16 + 2 TWBR): a clock period of 2.75 us gives 363.6
- * kHz, 2.5 us gives 400 kHz, with TWBR 14 and 12 at 16 MHz, 3 and 2 at 8 MHz. The internal pull-ups (to 5 V) stay off.
+ * TWI of the ATmega328P (data sheet chapter 26). SCL is F_CPU / (16 + 2 TWBR): TWBR is 14, 12 and 72 at 16 MHz, 3, 2
+ * and 32 at 8 MHz. The internal pull-ups (to 5 V) stay off.
  */
 #ifndef HAL_I2C_PORT_H
 #define HAL_I2C_PORT_H
@@ -11,15 +11,15 @@
 #include "hal_body.h"
 #include "hal_i2c.h"
 
-#define HAL_I2C_TWBR(clock_ns) ((uint8_t)((F_CPU / 1000000 * (clock_ns) / 1000 - 16) / 2))
+#define HAL_I2C_TWBR(period_025us) ((uint8_t)(F_CPU / 8000000 * (period_025us)-8u))
 #define HAL_I2C_ISR() ISR(TWI_vect)
 
 enum { HAL_I2C_GO = _BV(TWINT) | _BV(TWEN) | _BV(TWIE) };
 
-HAL_BODY void hal_i2c_enable(bool fast)
+HAL_BODY void hal_i2c_enable(uint8_t period_025us)
 {
     TWSR = 0;
-    TWBR = fast ? HAL_I2C_TWBR(2500) : HAL_I2C_TWBR(2750);
+    TWBR = HAL_I2C_TWBR(period_025us);
     TWCR = _BV(TWEN);
 }
 

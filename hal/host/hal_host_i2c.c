@@ -3,7 +3,7 @@
 
 #include "hal_host_private.h"
 
-enum { BITS_START = 1, BITS_BYTE = 9, CYCLES_PER_BIT = 44, CYCLES_PER_BIT_FAST = 40, CLEAR_CLOCKS_MAX = 16 };
+enum { BITS_START = 1, BITS_BYTE = 9, CYCLES_PER_PERIOD = 4, CLEAR_CLOCKS_MAX = 16 };
 
 typedef enum { COMMAND_NONE, COMMAND_START, COMMAND_SEND, COMMAND_RECEIVE_ACK, COMMAND_RECEIVE_NACK } command_t;
 
@@ -30,7 +30,7 @@ void host_i2c_begin(void)
     i2c.done_at = HOST_NEVER;
     i2c.stop_at = HOST_NEVER;
     i2c.status = HAL_I2C_NOTHING;
-    i2c.bit_cycles = CYCLES_PER_BIT;
+    i2c.bit_cycles = HAL_I2C_364_KHZ * CYCLES_PER_PERIOD;
 }
 
 void host_i2c_power_on(void)
@@ -60,10 +60,10 @@ static void give(command_t command, unsigned bits)
     i2c.done_at = from + (uint64_t)bits * i2c.bit_cycles;
 }
 
-void hal_i2c_enable(bool fast)
+void hal_i2c_enable(uint8_t period_025us)
 {
     i2c.enabled = true;
-    i2c.bit_cycles = fast ? CYCLES_PER_BIT_FAST : CYCLES_PER_BIT;
+    i2c.bit_cycles = (uint64_t)period_025us * CYCLES_PER_PERIOD;
 }
 
 /* The sensor sees the lines released: like a STOP. */

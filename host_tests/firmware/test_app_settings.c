@@ -181,6 +181,29 @@ static void test_address(void)
     TEST_ASSERT_INT_WITHIN(10, 100, (int)(board.row_count - rows));
 }
 
+/* The speed is in force with the reply, is saved, and stands in the line of the rate. */
+static void test_i2c(void)
+{
+    talk_start();
+    TEST_ASSERT_EQUAL_STRING("# i2c auto", talk_answer("i2c"));
+    TEST_ASSERT_EQUAL_STRING("# refused 4: i2c is one of auto 100 400", talk_answer("i2c 363.6"));
+    TEST_ASSERT_EQUAL_STRING("# i2c 100", talk_answer("i2c 100"));
+    board_run_ms(500);
+    TEST_ASSERT_EQUAL_STRING("# rate 50 Hz, I2C at 100 kHz", talk_answer("rate 50"));
+    TEST_ASSERT_EQUAL_STRING("# saved", talk_answer("save"));
+    talk_power_cycle(false);
+    TEST_ASSERT_EQUAL_STRING("# i2c 100", talk_answer("i2c"));
+    TEST_ASSERT_EQUAL_STRING("# rate 50 Hz, I2C at 100 kHz", talk_answer("rate"));
+    TEST_ASSERT_EQUAL_STRING("# i2c 400", talk_answer("i2c 400"));
+    TEST_ASSERT_EQUAL_STRING("# rate 50 Hz, I2C at 363.6 kHz", talk_answer("rate"));
+    size_t before = board.note_count;
+    talk_type("rate 800");
+    TEST_ASSERT_EQUAL_STRING("# rate 800 Hz, I2C at 400 kHz", board.notes[before]);
+    size_t rows = board.row_count;
+    board_run_ms(1000);
+    TEST_ASSERT_TRUE(board.row_count > rows + 100);
+}
+
 static bool is_axes(char a, char b, char c)
 {
     char line[16];
@@ -349,6 +372,7 @@ int main(void)
     RUN_TEST(test_changes_in_quick_succession);
     RUN_TEST(test_the_listing_can_be_typed_again);
     RUN_TEST(test_address);
+    RUN_TEST(test_i2c);
     RUN_TEST(test_axes);
     RUN_TEST(test_calibration_reaches_the_rows);
     RUN_TEST(test_a_level_of_more_than_1_g_can_be_typed_again);

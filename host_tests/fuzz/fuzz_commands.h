@@ -11,7 +11,7 @@
 #include "settings/settings.h"
 
 /* Settings with a name of their own, without the parameters of the filter. */
-enum { FUZZ_SETTINGS = 8, FUZZ_VECTORS = 3 };
+enum { FUZZ_SETTINGS = 9, FUZZ_VECTORS = 3 };
 
 enum { EXPECTED_MAX = 256, REPLIES_MAX = 1024, REPLY_TEXT = 80, LINE_TYPED_MAX = 512 };
 

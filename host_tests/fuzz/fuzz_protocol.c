@@ -26,8 +26,16 @@ static bool one_of(double value, const double *list, size_t count)
 
 bool settings_legal(const settings_t *s)
 {
-    return s->choice.filter < FILTER_KIND_COUNT && s->mode <= MODE_PLOT && s->every >= 1 && s->every <= 10000 &&
-           one_of(s->rate_dhz / 10.0, rates_hz, 7) && one_of(s->range_g, ranges_g, 4) && one_of(s->baud, bauds, 8);
+    return s->choice.filter < FILTER_KIND_COUNT && s->mode <= MODE_PLOT && s->i2c <= 48 && s->every >= 1 &&
+           s->every <= 10000 && one_of(s->rate_dhz / 10.0, rates_hz, 7) && one_of(s->range_g, ranges_g, 4) &&
+           one_of(s->baud, bauds, 8);
+}
+
+static bool calibrations_equal(const calibration_t *a, const calibration_t *b)
+{
+    return memcmp(a->offset_lsb_q4, b->offset_lsb_q4, 6) == 0 &&
+           memcmp(a->scale_lsb_per_g_uq6, b->scale_lsb_per_g_uq6, 6) == 0 && memcmp(a->axes, b->axes, 3) == 0 &&
+           memcmp(a->level_q14, b->level_q14, 6) == 0;
 }
 
 bool settings_equal(const settings_t *a, const settings_t *b)
@@ -37,16 +45,9 @@ bool settings_equal(const settings_t *a, const settings_t *b)
             return false;
         }
     }
-    const calibration_t *c = &a->calibration;
-    const calibration_t *d = &b->calibration;
-    if (memcmp(c->offset_lsb_q4, d->offset_lsb_q4, 6) != 0 ||
-        memcmp(c->scale_lsb_per_g_uq6, d->scale_lsb_per_g_uq6, 6) != 0 || memcmp(c->axes, d->axes, 3) != 0 ||
-        memcmp(c->level_q14, d->level_q14, 6) != 0) {
-        return false;
-    }
-    return a->choice.own == b->choice.own && a->baud == b->baud && a->rate_dhz == b->rate_dhz && a->every == b->every &&
-           a->range_g == b->range_g && a->mode == b->mode && a->address == b->address &&
-           a->choice.filter == b->choice.filter;
+    return calibrations_equal(&a->calibration, &b->calibration) && a->choice.own == b->choice.own &&
+           a->baud == b->baud && a->rate_dhz == b->rate_dhz && a->every == b->every && a->range_g == b->range_g &&
+           a->mode == b->mode && a->address == b->address && a->i2c == b->i2c && a->choice.filter == b->choice.filter;
 }
 
 static settings_t defaults(void)
@@ -128,6 +129,17 @@ static bool set_baud(settings_t *s, double v)
     return one_of(v, bauds, 8);
 }
 
+/* The value at the index of the word, of three; the last one if it is none of them. */
+static bool one_word(const char *value, const char *const words[3], const uint8_t values[3], uint8_t *to)
+{
+    size_t i = 0;
+    while (i < 2 && strcmp(value, words[i]) != 0) {
+        i++;
+    }
+    *to = values[i];
+    return strcmp(value, words[i]) == 0;
+}
+
 /* What `NAME VALUE` makes of the settings; false: not legal. */
 static bool set(settings_t *s, const char *name, const char *value)
 {
@@ -138,6 +150,14 @@ static bool set(settings_t *s, const char *name, const char *value)
     } numbers[] = {
         { "rate", 6, set_rate }, { "range", 0, set_range }, { "every", 0, set_every }, { "baud", 0, set_baud }
     };
+    const struct {
+        const char *name;
+        const char *words[3];
+        uint8_t values[3];
+        uint8_t *to;
+    } words[] = { { "address", { "auto", "53", "1d" }, { 0, 0x53, 0x1D }, &s->address },
+                  { "i2c", { "auto", "100", "400" }, { 0, 48, 32 }, &s->i2c },
+                  { "mode", { "plot", "csv", "csv" }, { MODE_PLOT, MODE_CSV, MODE_CSV }, &s->mode } };
     double v = 0.0;
     if (strcmp(name, "filter") == 0) {
         uint8_t filter = (uint8_t)filter_find(value);
@@ -150,13 +170,10 @@ static bool set(settings_t *s, const char *name, const char *value)
     if (strcmp(name, "axes") == 0) {
         return expected_axes(s, value);
     }
-    if (strcmp(name, "address") == 0) {
-        s->address = strcmp(value, "auto") == 0 ? 0 : (uint8_t)strtol(value, NULL, 16);
-        return strcmp(value, "auto") == 0 || strcmp(value, "53") == 0 || strcmp(value, "1d") == 0;
-    }
-    if (strcmp(name, "mode") == 0) {
-        s->mode = strcmp(value, "plot") == 0 ? MODE_PLOT : MODE_CSV;
-        return s->mode == MODE_PLOT || strcmp(value, "csv") == 0;
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+        if (strcmp(name, words[i].name) == 0) {
+            return one_word(value, words[i].words, words[i].values, words[i].to);
+        }
     }
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         if (strcmp(name, numbers[i].name) == 0) {
@@ -242,9 +259,8 @@ static bool expect_verb(expected_t *e, const char *line)
 /* A line without leading and trailing blanks, in lower case. */
 static void expect_line(expected_t *e, char *line)
 {
-    static const char *const names[SETTINGS] = {
-        "filter", "rate", "range", "every", "baud", "mode", "address", "axes"
-    };
+    static const char *const names[SETTINGS] = { "filter", "rate",    "range", "every", "baud",
+                                                 "mode",   "address", "i2c",   "axes" };
     if (expect_measuring(e, line) || expect_verb(e, line)) {
         return;
     }

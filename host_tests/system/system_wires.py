@@ -77,6 +77,39 @@ def wires_too_slow_for_400_khz_are_good_at_100_khz():
     assert most_sda_pf(30, 5000, 900) > 300
 
 
+SLOWED = "# fault 15: I2C at 100 kHz: check SDA, SCL, pull-ups, GND"
+
+
+@test
+def wires_too_slow_for_400_khz_get_100_khz_and_no_fault_after_it():
+    """For the identity, and for the master's arbitration; up to 400 Hz. It is told once, and lasts; 10 s at 100 Hz."""
+    for delay_ns in (900, 300):
+        pf = round(most_sda_pf(30, BIT_NS / 2, delay_ns) + 1.5)
+        for rate in (12.5, 100, 400):
+            ms = 12000 if rate == 100 else 4000
+            rows, notes, served, stats = simrun(f"wires-fallback-{delay_ns}-{rate}", REST, "--wires", f"{OHM},30,{pf}", "--rate", rate, "--every",
+                                                4 if rate == 400 else 1, "--baud", 500000, "--loop", "--max-ms", ms, "--cmd", f"{ms - 600}:rate")
+            told = [note for note in notes if note.startswith("# fault")]
+            assert told[0].startswith("# fault 2: " if delay_ns == 900 else "# fault 3: ") and told[-1] == SLOWED and len(told) <= 3, told
+            assert any(note.startswith(f"# rate {rate} Hz, I2C at 100 kHz") for note in notes), notes
+            assert stats["sensor_overruns"] == stats["rows_wrong"] == stats["rows_stale"] == stats["resets"] == 0, stats
+            assert_nothing_lost(rows, served, every=4 if rate == 400 else 1, from_us=2000000, end_us=(ms - 700) * 1000)
+
+
+@test
+def i2c_100_is_slow_from_the_start_and_400_stays_fast():
+    """Saved. Told is nothing: it was asked for. 800 Hz does without."""
+    wires = ("--wires", f"{OHM},30,{round(most_sda_pf(30, BIT_NS / 2, 900) + 1.5)}")
+    for speed, first, last in (("100", SENSOR_LINE.replace("363.6", "100"), None), ("400", "# no ADXL345", "# fault 2: ")):
+        image = OUT / "wires-i2c.eeprom"
+        image.unlink(missing_ok=True)
+        simrun("wires-i2c-save", REST, "--eeprom", image, "--cmd", f"600:i2c {speed}", "--cmd", "900:save", "--max-ms", 2000)
+        notes = simrun("wires-i2c", REST, "--eeprom", image, *wires, "--max-ms", 3000)[1]
+        told = [note for note in notes if note.startswith("# fault")]
+        assert (first in notes if last is None else not any("I2C at 100" in note for note in notes)), (speed, notes)
+        assert (told == [] if last is None else len(told) == 1 and told[0].startswith(last)), (speed, told)
+
+
 @test
 def line_that_rises_later_than_the_firmware_waits_reads_as_held_low():
     """By hand it waits 5 us for a line: more than the 4.8 of 10 kOhm and 400 pF, less than the 9.6 of 800 pF, twice what is allowed."""

@@ -33,9 +33,9 @@ def codes():
     found = {name: int(number) for name, number in re.findall(r"ADXL345_FAULT_(\w+) = (\d+)", text)}
     assert found.pop("NONE") == 0
     watch = pathlib.Path("firmware/control/sensor_watch.h").read_text(encoding="utf-8")
-    name, last = re.search(r"FAULT_(\w+) = ADXL345_FAULT_(\w+) \+ 1", watch).groups()
-    found[name] = found[last] + 1
-    return found
+    first, last, others = re.search(r"FAULT_(\w+) = ADXL345_FAULT_(\w+) \+ 1((?:, FAULT_\w+)*)", watch).groups()
+    names = [first, *re.findall(r"FAULT_(\w+)", others)]
+    return found | {name: found[last] + 1 + i for i, name in enumerate(names)}
 
 
 def rows():

@@ -65,6 +65,18 @@ void adxl345_init(void);
 /* Starts, or restarts with another configuration: samples already latched by the sensor are delivered first. */
 void adxl345_start(const adxl345_config_t *config);
 
+/*
+ * SCL from the next start on: 363.6 or 100 kHz. FALLS_BACK begins with 363.6 and changes to the other after sixteen
+ * faults that slow or noisy wires cause (WRONG_ID, BUS, READ_BACK, TORN), as often as they come. The speed that is set
+ * already begins nothing anew. 800 Hz always has 400 kHz.
+ */
+typedef enum { ADXL345_I2C_FALLS_BACK = 0, ADXL345_I2C_364_KHZ = 32, ADXL345_I2C_100_KHZ = 48 } adxl345_i2c_t;
+void adxl345_set_i2c(adxl345_i2c_t speed);
+
+/* SCL is 100 kHz; and it is because of those faults. */
+bool adxl345_i2c_slow(void);
+bool adxl345_i2c_fell_back(void);
+
 /* Standby, after the samples already latched have been delivered. */
 void adxl345_stop(void);
 

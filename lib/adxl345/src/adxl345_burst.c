@@ -135,7 +135,7 @@ void adxl345_burst_set_mode(burst_mode_t new_mode)
     hal_irq_restore(state);
 }
 
-uint8_t adxl345_burst_take_bus(uint8_t address, bool fast)
+uint8_t adxl345_burst_take_bus(uint8_t address, uint8_t period_025us)
 {
     struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
@@ -145,7 +145,7 @@ uint8_t adxl345_burst_take_bus(uint8_t address, bool fast)
     b->bus.address = (uint8_t)(address * 2U);
     hal_irq_restore(state);
     uint8_t lines = hal_i2c_clear();
-    hal_i2c_enable(fast);
+    hal_i2c_enable(period_025us);
     b->bus.state = was == I2C_BUS_BUSY ? (uint8_t)I2C_BUS_TIMEOUT : was; /* from here on an edge may start a burst */
     (void)adxl345_burst_judge();
     return lines;

@@ -33,7 +33,7 @@ void adxl345_burst_set_mode(burst_mode_t mode);
  * Takes over the pins (again). Returns HAL_I2C_FREE, or the line that is low. A running transfer is abandoned, and a
  * slave in the middle of a byte is clocked out of it.
  */
-uint8_t adxl345_burst_take_bus(uint8_t address, bool fast);
+uint8_t adxl345_burst_take_bus(uint8_t address, uint8_t period_025us);
 
 /*
  * Register access outside streaming: false if the bus is not free yet. Poll adxl345_burst_bus_state until it is not

@@ -49,6 +49,29 @@ void adxl345_driver_stopped(void)
     adxl345_driver_state()->step = STEP_OFF;
 }
 
+void adxl345_set_i2c(adxl345_i2c_t speed)
+{
+    if (((uint8_t)speed | adxl345_driver_state()->garbled) >= GARBLED_ASKED) {
+        adxl345_driver_state()->garbled = (uint8_t)speed;
+    }
+}
+
+bool adxl345_i2c_slow(void)
+{
+    return (adxl345_driver_state()->garbled & GARBLED_SLOW) != 0 && adxl345_driver_state()->config.rate_dhz != 8000;
+}
+
+bool adxl345_i2c_fell_back(void)
+{
+    return adxl345_i2c_slow() && adxl345_driver_state()->garbled < GARBLED_ASKED;
+}
+
+static bool garbles(adxl345_fault_t fault)
+{
+    return fault == ADXL345_FAULT_WRONG_ID || fault == ADXL345_FAULT_BUS || fault == ADXL345_FAULT_READ_BACK ||
+           fault == ADXL345_FAULT_TORN;
+}
+
 void adxl345_driver_fail(adxl345_fault_t fault)
 {
     adxl345_driver_t *d = adxl345_driver_here();
@@ -61,6 +84,9 @@ void adxl345_driver_fail(adxl345_fault_t fault)
         }
         return;
     }
+    if (d->garbled < GARBLED_ASKED && garbles(fault)) {
+        d->garbled = (uint8_t)(d->garbled + 1u) % GARBLED_ASKED;
+    }
     d->fault = (uint8_t)fault;
     d->after_fault = true;
     adxl345_driver_enter(STEP_BACK_OFF, d->back_off);
@@ -72,8 +98,13 @@ void adxl345_driver_fail(adxl345_fault_t fault)
 
 bool adxl345_driver_take_bus(void)
 {
-    uint8_t lines = adxl345_burst_take_bus(adxl345_driver_state()->address,
-                                           adxl345_driver_state()->config.rate_dhz == 8000);
+    uint8_t period_025us = HAL_I2C_364_KHZ;
+    if (adxl345_i2c_slow()) {
+        period_025us = HAL_I2C_100_KHZ;
+    } else if (adxl345_driver_state()->config.rate_dhz == 8000) {
+        period_025us = HAL_I2C_400_KHZ;
+    }
+    uint8_t lines = adxl345_burst_take_bus(adxl345_driver_state()->address, period_025us);
     if (lines == HAL_I2C_FREE) {
         return true;
     }

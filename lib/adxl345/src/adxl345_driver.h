@@ -10,9 +10,15 @@
 #include "i2c_bus.h"
 #include "machine.h"
 
-/* Time limits in half milliseconds, to fit a byte. A register access takes under 0.2 ms, a burst under 0.4. */
+/* Time limits in half milliseconds, to fit a byte. At 100 kHz a register access takes 0.4 ms, a burst 1.2. */
 #define LIMIT_US 500u
 enum { RETURN_LIMIT = 2, TRANSFER_LIMIT = 6, BACK_OFF_MIN = 10, BACK_OFF_MAX = 50, DRAIN_LIMIT = 200 };
+
+/* Faults of a garbled bus before SCL changes: 0.35 s of failed probes. A power of two, as the one above it. */
+enum { GARBLED_SLOW = 16, GARBLED_ASKED = 32 };
+
+_Static_assert((int)ADXL345_I2C_364_KHZ == (int)GARBLED_ASKED, "not slow");
+_Static_assert((int)ADXL345_I2C_100_KHZ == (int)GARBLED_ASKED + (int)GARBLED_SLOW, "slow");
 
 /* Failed transfers of one kind that make a fault: a single one may be noise. */
 enum { TRIES = 3 };
@@ -58,6 +64,7 @@ typedef struct {
     uint8_t tries;    /* failed attempts of the step's register access */
     bool renewed;     /* a configuration was requested and the sensor has not been probed with it yet */
     bool after_fault; /* a fault occurred since the sensor was last configured */
+    uint8_t garbled;  /* faults that a slower SCL may cure, of 32; from GARBLED_ASKED on the speed that was asked for */
 } adxl345_driver_t;
 
 /* The only instance. */

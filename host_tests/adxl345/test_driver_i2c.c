@@ -1,0 +1,154 @@
+/* How fast SCL is: what is asked for, what 800 Hz needs, and what the driver changes by itself on a garbled bus. */
+#include "adxl345.h"
+#include "adxl345_burst.h"
+#include "adxl345_registers.h"
+#include "hal_host.h"
+#include "hal_sleep.h"
+#include "hal_time.h"
+#include "support/board.h"
+#include "support/documented_limits.h"
+#include "support/rig.h"
+#include "unity.h"
+
+static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
+static bool slow_wires;         /* SDA rises too late for 363.6 kHz: ones read as zeros */
+static unsigned foreign, asked; /* so many DEVIDs are another's; reads of DEVID */
+
+static uint8_t on_rx(uint8_t reg, uint8_t byte)
+{
+    if (reg == ADXL345_DEVID) {
+        asked++;
+        return asked <= foreign || (slow_wires && !adxl345_i2c_slow()) ? 0x60 : byte;
+    }
+    return byte;
+}
+
+void setUp(void)
+{
+    rig_begin(100.0, (hal_host_config_t){ .on_rx = on_rx });
+    slow_wires = false;
+    foreign = 0;
+    asked = 0;
+}
+
+void tearDown(void)
+{
+    rig_end();
+}
+
+static const adxl345_i2c_t speeds[] = { ADXL345_I2C_FALLS_BACK, ADXL345_I2C_100_KHZ, ADXL345_I2C_364_KHZ };
+
+static void begin_at(uint16_t rate_dhz, adxl345_i2c_t speed)
+{
+    adxl345_config_t config = { rate_dhz, 16, false, 0 };
+    rig_begin(rate_dhz / 10.0, (hal_host_config_t){ .on_rx = on_rx });
+    adxl345_set_i2c(speed == ADXL345_I2C_FALLS_BACK ? ADXL345_I2C_364_KHZ : ADXL345_I2C_FALLS_BACK);
+    adxl345_set_i2c(speed);
+    adxl345_start(&config);
+}
+
+static uint32_t burst_us(void)
+{
+    rig_until_pause();
+    while (!adxl345_burst_running()) {
+        adxl345_poll(hal_time_us());
+        board_driver_sleep();
+    }
+    while (adxl345_burst_bus_state() == I2C_BUS_BUSY) {
+        hal_sleep_until_wake(); /* its end wakes */
+    }
+    return hal_time_us() - adxl345_burst_begun_us();
+}
+
+/*
+ * A burst has 119 bits: START, address, register, START, address, ten bytes, 9 each. At 363.6 kHz that is 327 us, at
+ * 400 kHz, which 800 Hz needs and no other rate gets (data sheet p. 18), 297.5 us, at 100 kHz 1190. Main's pass takes
+ * 20 us here. Nothing is lost at any rate.
+ */
+static void test_a_burst_takes_the_time_of_its_bits(void)
+{
+    static const uint16_t rates_dhz[] = { 125, 250, 500, 1000, 2000, 4000, 8000 };
+    for (size_t s = 0; s < sizeof speeds / sizeof speeds[0]; s++) {
+        for (size_t r = 0; r < sizeof rates_dhz / sizeof rates_dhz[0]; r++) {
+            bool slow = speeds[s] == ADXL345_I2C_100_KHZ && rates_dhz[r] != 8000;
+            uint32_t bits_us = slow ? 1190 : rates_dhz[r] == 8000 ? 297 : 327;
+            begin_at(rates_dhz[r], speeds[s]);
+            rig_run_ms(50.0 + 300000.0 / rates_dhz[r]);
+            TEST_ASSERT_UINT32_WITHIN(12, bits_us + 10, burst_us());
+            TEST_ASSERT_EQUAL(slow, adxl345_i2c_slow());
+            TEST_ASSERT_FALSE(adxl345_i2c_fell_back());
+            rig_run_ms(500.0);
+            TEST_ASSERT_EQUAL_size_t(0, rig_lost(30.0 + 20000.0 / rates_dhz[r]));
+        }
+    }
+}
+
+/* The sensor is found at the other speed, and stays there until another speed is set. */
+static void test_slow_wires_get_a_slow_clock(void)
+{
+    slow_wires = true;
+    begin_at(1000, ADXL345_I2C_FALLS_BACK);
+    rig_run_ms(300);
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_WRONG_ID, adxl345_fault());
+    rig_run_ms(200);
+    TEST_ASSERT_TRUE(adxl345_i2c_slow());
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+    TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+    adxl345_start(&at_100_hz);
+    rig_run_ms(1000);
+    TEST_ASSERT_TRUE(adxl345_i2c_slow());
+    TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
+    slow_wires = false;
+    adxl345_set_i2c(ADXL345_I2C_FALLS_BACK);
+    adxl345_start(&at_100_hz);
+    rig_run_ms(1000);
+    TEST_ASSERT_TRUE(adxl345_i2c_slow());
+    begin_at(1000, ADXL345_I2C_FALLS_BACK);
+    rig_run_ms(1000);
+    TEST_ASSERT_FALSE(adxl345_i2c_slow());
+    TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+}
+
+/* Sixteen faults; sixteen more, and the faster one is tried again. A speed that was asked for stays. */
+static void test_the_clock_changes_after_sixteen_faults(void)
+{
+    for (unsigned faults = 0; faults <= 3 * LIMIT_GARBLED; faults++) {
+        for (size_t s = 0; s < sizeof speeds / sizeof speeds[0]; s++) {
+            asked = 0;
+            foreign = faults;
+            begin_at(1000, speeds[s]);
+            rig_run_ms(50.0 + 30.0 * faults);
+            TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+            bool fell_back = speeds[s] == ADXL345_I2C_FALLS_BACK && faults / LIMIT_GARBLED % 2 != 0;
+            TEST_ASSERT_EQUAL(fell_back, adxl345_i2c_fell_back());
+            TEST_ASSERT_EQUAL(fell_back || speeds[s] == ADXL345_I2C_100_KHZ, adxl345_i2c_slow());
+        }
+    }
+}
+
+/* A sensor that is not there, or lines that are held low, say nothing about the clock. */
+static void test_other_faults_leave_the_clock(void)
+{
+    begin_at(1000, ADXL345_I2C_FALLS_BACK);
+    rig_run_ms(300);
+    adxl345_model_power(&hal_host_sensor, false);
+    rig_run_ms(2000);
+    adxl345_model_power(&hal_host_sensor, true);
+    rig_run_ms(300);
+    hal_host_faults.sda_low = true;
+    rig_run_ms(2000);
+    hal_host_faults.sda_low = false;
+    rig_run_ms(300);
+    TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
+    TEST_ASSERT_FALSE(adxl345_i2c_slow());
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_burst_takes_the_time_of_its_bits);
+    RUN_TEST(test_slow_wires_get_a_slow_clock);
+    RUN_TEST(test_the_clock_changes_after_sixteen_faults);
+    RUN_TEST(test_other_faults_leave_the_clock);
+    return UNITY_END();
+}
