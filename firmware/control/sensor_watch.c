@@ -54,13 +54,13 @@ const sensor_outage_t *sensor_watch_outage(void)
 uint8_t sensor_watch_fault(void)
 {
     uint8_t fault = (uint8_t)adxl345_fault();
-    if (fault == ADXL345_FAULT_NONE && gravity_absent()) {
-        fault = FAULT_OTHER_PART;
+    if (fault != ADXL345_FAULT_NONE) {
+        return fault;
     }
-    if (fault == ADXL345_FAULT_NONE && adxl345_i2c_fell_back()) {
-        fault = FAULT_I2C_SLOWED;
+    if (gravity_absent()) {
+        return FAULT_OTHER_PART;
     }
-    return fault;
+    return adxl345_i2c_fell_back() ? (uint8_t)FAULT_I2C_SLOWED : (uint8_t)ADXL345_FAULT_NONE;
 }
 
 /* Nothing is reported about the time before. */

@@ -1,6 +1,6 @@
 /*
- * Main's sample path: starts and changes filters, gives them the sensor's true rate, and takes samples, or the places
- * of missing ones, through them. Its cycles: sample_total in docs/results/benchmarks.md.
+ * Main's sample path: starts and changes filters, gives them the true rate, and takes samples, or the places of missing
+ * ones, through them. Cycles: sample_total in docs/results/benchmarks.md.
  */
 #include "path/pipeline.h"
 
@@ -355,9 +355,9 @@ static uint16_t with_state(uint16_t flags, const int32_t a_q8[3])
 
 void pipeline_row(row_t *row)
 {
-    int32_t estimates_q8[AXES];
-    static int32_t a_q8[AXES]; /* cheaper to access than on the stack */
+    int32_t estimates_q8[AXES], a_q8[AXES];
     int32_t *estimate = estimates_q8;
+    const int32_t *a = a_q8;
     MACHINE_POINTER(row); /* with its address in a register, each access takes half the code */
     for (const tilt_axis_t *axis = pipeline.axes; axis != pipeline.axes + AXES; axis++) {
         *estimate++ = tilt_axis_estimate_q8(axis);
@@ -372,7 +372,7 @@ void pipeline_row(row_t *row)
     row->t_us = pipeline.newest.t_us;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         row->lsb[axis] = pipeline.newest.lsb[axis];
-        row->mg[axis] = to_mg(a_q8[axis]);
+        row->mg[axis] = to_mg(*a++);
     }
     row->roll_cdeg = pipeline.tilt.roll_cdeg;
     row->pitch_cdeg = pipeline.tilt.pitch_cdeg;

@@ -48,7 +48,6 @@ typedef struct {
     uint32_t now_us; /* time of the current poll or call */
     uint32_t deadline_us;
     uint16_t half_us;        /* half the nominal time between samples, for the configured rate */
-    uint16_t patience_2us;   /* time after a sample at which the edge of the next is overdue */
     uint8_t back_off;        /* limit */
     uint8_t step;            /* step_t */
     uint8_t address;         /* address being probed */

@@ -40,7 +40,7 @@ static uint16_t patience_2us(uint16_t half_us)
  */
 static MACHINE_APART void look_after(adxl345_driver_t *d)
 {
-    uint16_t after_2us = d->patience_2us;
+    uint16_t after_2us = patience_2us(d->half_us);
     if (d->fault != ADXL345_FAULT_NONE || hal_drdy_high()) {
         after_2us = d->half_us - d->half_us / 16u;
     }
@@ -56,7 +56,6 @@ void adxl345_stream_start(adxl345_driver_t *d)
     }
     adxl345_integrity_start(&d->config);
     d->first_sample_seen = false;
-    d->patience_2us = patience_2us(d->half_us);
     adxl345_burst_expect(d->now_us + FIRST_US);
     adxl345_driver_enter(STEP_STREAM, 0);
     look_after(d);
