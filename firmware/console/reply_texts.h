@@ -242,7 +242,7 @@ enum say {
     X(TWO_SENSORS, "values double: two sensors at 0x" V_ADDRESS) \
     X(INT1_FLICKERS, "INT1 flickers: check INT1 to D2") \
     X(OTHER_PART, "not an ADXL345, or offsets beyond its data sheet: cal6") \
-    X(I2C_SLOWED, "I2C at 100 kHz" V_CHECK_BUS)
+    X(I2C_SLOWED, "I2C at 100 kHz up to 200 Hz" V_CHECK_BUS)
 /* clang-format on */
 
 #define REPLY_TEXT_ID(name, words) TEXT_##name,

@@ -157,8 +157,7 @@ static uint8_t text_chosen(said_t *said, uint8_t what)
 /* 800 Hz needs 400 kHz, where tLOW is 1.25 us instead of the 1.3 us of both data sheets. */
 static void say_bus_khz(void)
 {
-    uint16_t dkhz = adxl345_i2c_slow() ? 1000 : 3636;
-    text_tenths(settings()->rate_dhz == 8000 ? 4000 : dkhz);
+    text_tenths((uint16_t)(40000u / adxl345_scl_025us(settings()->rate_dhz)));
 }
 
 /* Codes that are neither a text nor one of many numbers. */

@@ -28,8 +28,12 @@ static void start_sensor(void)
 {
     adxl345_config_t config = { settings()->rate_dhz, settings()->range_g, false, settings()->address };
     measure_configure(&config);
-    adxl345_set_i2c((adxl345_i2c_t)settings()->i2c);
     adxl345_start(&config);
+}
+
+static void set_i2c(void)
+{
+    adxl345_set_i2c((adxl345_i2c_t)settings()->i2c);
 }
 
 static void change_pipeline(void)
@@ -46,6 +50,7 @@ void control_start(uint32_t now_us)
     coast_wait(now_us);
     pipeline_forget();
     change_pipeline();
+    set_i2c();
     start_sensor();
 }
 
@@ -61,6 +66,7 @@ static void follow(uint8_t starts)
     }
     if (starts & STARTS_SENSOR) {
         measure_abort();
+        set_i2c();
         if (control.sampling) {
             control.changes |= CHANGE_CONFIG;
             start_sensor();

@@ -41,6 +41,7 @@ typedef struct {
     bool over;              /* the outage is over, and the line that reports it is not queued yet */
     beside_t part;          /* FAULT_OTHER_PART */
     beside_t slowed;        /* FAULT_I2C_SLOWED */
+    uint8_t in_force;       /* one of these two, or none */
 } watch_t;
 
 static watch_t watch;
@@ -51,16 +52,14 @@ const sensor_outage_t *sensor_watch_outage(void)
     return &reported;
 }
 
+static MACHINE_APART uint8_t with_beside(uint8_t fault)
+{
+    return fault != ADXL345_FAULT_NONE ? fault : watch.in_force;
+}
+
 uint8_t sensor_watch_fault(void)
 {
-    uint8_t fault = (uint8_t)adxl345_fault();
-    if (fault != ADXL345_FAULT_NONE) {
-        return fault;
-    }
-    if (gravity_absent()) {
-        return FAULT_OTHER_PART;
-    }
-    return adxl345_i2c_fell_back() ? (uint8_t)FAULT_I2C_SLOWED : (uint8_t)ADXL345_FAULT_NONE;
+    return with_beside((uint8_t)adxl345_fault());
 }
 
 /* Nothing is reported about the time before. */
@@ -155,13 +154,36 @@ static MACHINE_APART bool tell_beside(beside_t *b, uint8_t fault, bool holds)
     return told;
 }
 
-/* Reports what was noted and is not reported yet; `reported` has room for one end. */
+/* `reported` has room for one end. */
+static MACHINE_APART bool may_tell(void)
+{
+    return settings()->mode != MODE_PLOT && !notices_hold(NOTICE_FAULT_END, NOTICE_FAULT_END);
+}
+
+void sensor_watch_second(void)
+{
+    watch_t *w = &watch;
+
+    bool part = gravity_absent();
+    bool slowed = adxl345_i2c_fell_back();
+    uint8_t in_force = ADXL345_FAULT_NONE;
+    if (slowed) {
+        in_force = FAULT_I2C_SLOWED;
+    }
+    if (part) {
+        in_force = FAULT_OTHER_PART;
+    }
+    w->in_force = in_force;
+    /* without samples the driver may be trying one speed after the other */
+    if (may_tell() && !tell_beside(&w->part, FAULT_OTHER_PART, part) && adxl345_phase() == ADXL345_STREAMING) {
+        (void)tell_beside(&w->slowed, FAULT_I2C_SLOWED, slowed);
+    }
+}
+
+/* Reports what was noted and is not reported yet. */
 static void tell(watch_t *w)
 {
-    if (settings()->mode == MODE_PLOT || notices_hold(NOTICE_FAULT_END, NOTICE_FAULT_END)) {
-        return;
-    }
-    if (w->newest != ADXL345_FAULT_NONE) {
+    if (w->newest != ADXL345_FAULT_NONE && may_tell()) {
         uint16_t bit = newest_bit();
         if (!(w->reported_mask & bit)) {
             if (notices_add(NOTICE_FAULT_BEGIN, w->newest)) {
@@ -170,12 +192,7 @@ static void tell(watch_t *w)
         } else if (w->over && notices_add(NOTICE_FAULT_END, w->newest)) {
             reported = w->outage;
             forget();
-            return;
         }
-    }
-    /* while a fault lasts, the driver may be trying one speed after the other */
-    if (!tell_beside(&w->part, FAULT_OTHER_PART, gravity_absent()) && w->newest == ADXL345_FAULT_NONE) {
-        (void)tell_beside(&w->slowed, FAULT_I2C_SLOWED, adxl345_i2c_fell_back());
     }
 }
 
@@ -186,10 +203,8 @@ void sensor_watch_pass(uint32_t now_us)
     uint8_t fault = (uint8_t)adxl345_fault();
     if (adxl345_phase() == ADXL345_STOPPED) { /* not repaired, just not polled */
         forget();
-        w->part.told = false;
-        gravity_forget();
     }
     note(w, fault, now_us);
-    show(sensor_watch_fault(), now_us);
+    show(with_beside(fault), now_us);
     tell(w);
 }

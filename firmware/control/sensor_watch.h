@@ -18,6 +18,9 @@ void sensor_watch_start(uint32_t now_us);
 /* Call every few ms, in passes that poll the driver. */
 void sensor_watch_pass(uint32_t now_us);
 
+/* Call once a second: the faults that are none of the driver's begin and end then. */
+void sensor_watch_second(void);
+
 /* The fault in force: the driver's if there is one, else one of these or none. */
 uint8_t sensor_watch_fault(void);
 

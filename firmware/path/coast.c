@@ -75,12 +75,13 @@ bool coast_over(uint32_t period_us, bool sample)
     return true;
 }
 
-/* Counts what is missing before a sample that has come; none if it is older than the sample before the outage. */
+/* Counts what is missing before a sample that has come; none if it is older than what is counted. */
 static void count_missing(struct coast *c, uint32_t t_us, uint32_t period_us)
 {
     int32_t since_us = (int32_t)(t_us - c->from_us);
     if (since_us > 0) {
         count_lost((uint32_t)since_us / period_us);
+        c->from_us = t_us + (period_us >> 1);
     }
 }
 
@@ -89,7 +90,6 @@ bool coast_sample(uint32_t t_us, uint32_t period_us)
     struct coast *c = here();
     if (c->state == STATE_COASTING) {
         count_missing(c, t_us, period_us);
-        c->from_us = t_us + (period_us >> 1);
     }
     if (c->state != STATE_WAITING && hal_time_reached(pipeline_newest_us(), t_us)) {
         count(COUNT_LATE);

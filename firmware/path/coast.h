@@ -28,7 +28,7 @@ uint32_t coast_due_us(void);
 bool coast_over(uint32_t period_us, bool sample);
 
 /*
- * A sample with this time has come. True: it goes into the pipeline; samples missing before it are counted, and the
+ * A sample with this time has come; samples missing before it are counted. True: it goes into the pipeline, and the
  * next is expected one period later. False: it is not later than the newest row; it is counted, and must not be used.
  */
 bool coast_sample(uint32_t t_us, uint32_t period_us);

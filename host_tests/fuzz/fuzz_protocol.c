@@ -26,9 +26,9 @@ static bool one_of(double value, const double *list, size_t count)
 
 bool settings_legal(const settings_t *s)
 {
-    return s->choice.filter < FILTER_KIND_COUNT && s->mode <= MODE_PLOT && s->i2c <= 48 && s->every >= 1 &&
-           s->every <= 10000 && one_of(s->rate_dhz / 10.0, rates_hz, 7) && one_of(s->range_g, ranges_g, 4) &&
-           one_of(s->baud, bauds, 8);
+    return s->choice.filter < FILTER_KIND_COUNT && s->mode <= MODE_PLOT &&
+           (s->i2c == 0 || s->i2c == 32 || s->i2c == 48) && s->every >= 1 && s->every <= 10000 &&
+           one_of(s->rate_dhz / 10.0, rates_hz, 7) && one_of(s->range_g, ranges_g, 4) && one_of(s->baud, bauds, 8);
 }
 
 static bool calibrations_equal(const calibration_t *a, const calibration_t *b)

@@ -134,7 +134,7 @@
       "docs/faults.md: changes by {v - (v >> 4)} LSB or more | docs/faults.md: values below {} LSB do not count",      \
       "lib/adxl345/src/adxl345_watch.c: MIN_LSB = {},", "test_watch: test_what_a_doubling_is")                         \
     X(GARBLED, 16, "docs/faults.md: After {word} of the faults",                                                       \
-      "lib/adxl345/src/adxl345_driver.h: GARBLED_SLOW = {} ",                                                          \
+      "lib/adxl345/src/adxl345_driver.h: GARBLED_SLOW = {}, ",                                                         \
       "test_driver_i2c: test_the_clock_changes_after_sixteen_faults")                                                  \
     X(EDGES, 9, "docs/faults.md: The {nth} switches the input | docs/faults.md: before the {nth} comes",               \
       "hal/hal_drdy.h: HAL_DRDY_EDGES = {},", "test_driver_int1: test_nine_edges_in_a_tick_flicker")                   \

@@ -12,11 +12,14 @@ static bool falls_asleep(const avr_t *avr)
     return mcu_opcode_at(avr->pc) == OPCODE_SLEEP;
 }
 
-/* What is pending already would not end a sleep of simavr before its next timer. True: its handler runs. */
+/*
+ * What is pending already would not end a sleep of simavr before its next timer. No instruction of main comes between
+ * two handlers. True: a handler runs.
+ */
 static bool serves_pending(avr_t *avr)
 {
     uint64_t began = avr->cycle;
-    while (avr->interrupt_state != 0 && !times_in_interrupt()) {
+    while (avr->interrupt_state != 0 && avr->sreg[S_I] && !times_in_interrupt()) {
         avr_service_interrupts(avr);
     }
     if (avr->cycle != began) {

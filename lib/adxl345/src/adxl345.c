@@ -38,6 +38,7 @@ void adxl345_init(void)
         adxl345_watch_start();
         adxl345_driver_stopped();
         adxl345_driver_state()->issued = false;
+        adxl345_driver_state()->garbled = 0;
     }
     adxl345_driver_state()->address = ADXL345_ADDRESS_LOW;
     adxl345_driver_state()->known = ADXL345_ADDRESS_LOW;

@@ -67,14 +67,15 @@ void adxl345_start(const adxl345_config_t *config);
 
 /*
  * SCL from the next start on: 363.6 or 100 kHz. FALLS_BACK begins with 363.6 and changes to the other after sixteen
- * faults that slow or noisy wires cause (WRONG_ID, BUS, READ_BACK, TORN), as often as they come. The speed that is set
- * already begins nothing anew. 800 Hz always has 400 kHz.
+ * faults that slow or noisy wires cause (WRONG_ID with ones missing, BUS, READ_BACK, TORN), and back after sixteen
+ * more. Setting the same speed again changes nothing. The sensor takes 100 kHz up to 200 Hz (p. 18): 400 Hz always has
+ * 363.6, 800 Hz always 400 kHz.
  */
 typedef enum { ADXL345_I2C_FALLS_BACK = 0, ADXL345_I2C_364_KHZ = 32, ADXL345_I2C_100_KHZ = 48 } adxl345_i2c_t;
 void adxl345_set_i2c(adxl345_i2c_t speed);
 
-/* SCL is 100 kHz; and it is because of those faults. */
-bool adxl345_i2c_slow(void);
+/* SCL's period at this output data rate, in 0.25 us; whether faults have made it slow, which shows up to 200 Hz. */
+uint8_t adxl345_scl_025us(uint16_t rate_dhz);
 bool adxl345_i2c_fell_back(void);
 
 /* Standby, after the samples already latched have been delivered. */
@@ -147,7 +148,7 @@ typedef struct {
     uint16_t failed;   /* torn, shifted, or no device */
     uint16_t empty;    /* INT1 was high, but the sensor had no new sample */
     uint16_t overruns; /* readings from a FIFO that had filled up: samples were lost */
-    uint16_t storms;   /* times that INT1 began to flicker */
+    uint16_t storms;   /* times that ADXL345_FAULT_INT1_FLICKERS began */
 } adxl345_readings_t;
 void adxl345_readings(adxl345_readings_t *out);
 

@@ -11,6 +11,9 @@
 #include "hal_i2c.h"
 #include "hal_sleep.h"
 
+_Static_assert((int)ADXL345_I2C_364_KHZ == (int)GARBLED_ASKED, "not slow");
+_Static_assert((int)ADXL345_I2C_100_KHZ == (int)GARBLED_ASKED + (int)GARBLED_SLOW, "slow");
+
 static adxl345_driver_t driver;
 
 adxl345_driver_t *adxl345_driver_state(void)
@@ -56,20 +59,26 @@ void adxl345_set_i2c(adxl345_i2c_t speed)
     }
 }
 
-bool adxl345_i2c_slow(void)
-{
-    return (adxl345_driver_state()->garbled & GARBLED_SLOW) != 0 && adxl345_driver_state()->config.rate_dhz != 8000;
-}
-
 bool adxl345_i2c_fell_back(void)
 {
-    return adxl345_i2c_slow() && adxl345_driver_state()->garbled < GARBLED_ASKED;
+    return (uint8_t)(adxl345_driver_state()->garbled - GARBLED_SLOW) < GARBLED_ASKED - GARBLED_SLOW;
 }
 
+uint8_t adxl345_scl_025us(uint16_t rate_dhz)
+{
+    if (rate_dhz > SLOW_MAX_DHZ) {
+        return rate_dhz == 8000 ? HAL_I2C_400_KHZ : HAL_I2C_364_KHZ;
+    }
+    return (adxl345_driver_state()->garbled & GARBLED_SLOW) != 0 ? HAL_I2C_100_KHZ : HAL_I2C_364_KHZ;
+}
+
+/* Ones that are late read as zeros: of another identity, which is just read, none is more than it should be. */
 static bool garbles(adxl345_fault_t fault)
 {
-    return fault == ADXL345_FAULT_WRONG_ID || fault == ADXL345_FAULT_BUS || fault == ADXL345_FAULT_READ_BACK ||
-           fault == ADXL345_FAULT_TORN;
+    if (fault == ADXL345_FAULT_WRONG_ID) {
+        return (adxl345_burst_register_value() & (uint8_t)~ADXL345_DEVID_VALUE) == 0;
+    }
+    return fault == ADXL345_FAULT_BUS || fault == ADXL345_FAULT_READ_BACK || fault == ADXL345_FAULT_TORN;
 }
 
 void adxl345_driver_fail(adxl345_fault_t fault)
@@ -84,7 +93,7 @@ void adxl345_driver_fail(adxl345_fault_t fault)
         }
         return;
     }
-    if (d->garbled < GARBLED_ASKED && garbles(fault)) {
+    if (d->garbled < GARBLED_ASKED && d->config.rate_dhz <= SLOW_MAX_DHZ && garbles(fault)) {
         d->garbled = (uint8_t)(d->garbled + 1u) % GARBLED_ASKED;
     }
     d->fault = (uint8_t)fault;
@@ -98,13 +107,8 @@ void adxl345_driver_fail(adxl345_fault_t fault)
 
 bool adxl345_driver_take_bus(void)
 {
-    uint8_t period_025us = HAL_I2C_364_KHZ;
-    if (adxl345_i2c_slow()) {
-        period_025us = HAL_I2C_100_KHZ;
-    } else if (adxl345_driver_state()->config.rate_dhz == 8000) {
-        period_025us = HAL_I2C_400_KHZ;
-    }
-    uint8_t lines = adxl345_burst_take_bus(adxl345_driver_state()->address, period_025us);
+    uint8_t lines = adxl345_burst_take_bus(adxl345_driver_state()->address,
+                                           adxl345_scl_025us(adxl345_driver_state()->config.rate_dhz));
     if (lines == HAL_I2C_FREE) {
         return true;
     }
