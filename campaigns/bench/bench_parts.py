@@ -46,12 +46,12 @@ PARTS = {
     "sleep": "hal_sleep_until_wake",
     "time and alarm": "hal_time_* hal_wake_at set_alarm",
     "missing samples": "coast_* expect",
-    "supervision": "service health_*",
+    "supervision": "service health_* sensor_watch_second",
     "commands and replies": "commands_pass takes_commands speaker_pass measure_pass measure_sample",
 }
 OWN = {
     "glue per axis": "filter_axes tilt_axis_update tilt_at_rail flags_of",
-    "glue per sample": "pipeline_work begin_next pipeline_sample count_sample hung silence_* pipeline_second",
+    "glue per sample": "pipeline_work begin_next pipeline_sample count_sample hung silence_* pipeline_second retime gravity_*",
     "row: rest": "write_row settings_every_in_force rows_sample rows_at_once newest_time pipeline_row with_state find_angles pipeline_row_done write",
     "main loop": "main app_pass serve work_piece filter_samples next_sample pass_* control_follow "
                  "control_line_waits measure_asks measure_borrows store_busy",
