@@ -1,5 +1,6 @@
 """What slow wires do to the bus and to the firmware, by the times of UM10204 and of the data sheets; part of system_tests.py."""
 import math
+import re
 
 from system_injections import REST, bus_probe
 from system_support import FW, OUT, SIMRUN, assert_nothing_lost, run, simrun, test
@@ -94,6 +95,16 @@ def wires_too_slow_for_400_khz_get_100_khz_and_no_fault_after_it():
             assert any(note.startswith(f"# rate {rate} Hz, I2C at 100 kHz") for note in notes), notes
             assert stats["sensor_overruns"] == stats["rows_wrong"] == stats["rows_stale"] == stats["resets"] == 0, stats
             assert_nothing_lost(rows, served, every=1, from_us=2000000, end_us=(ms - 700) * 1000)
+
+
+@test
+def a_speed_that_is_asked_for_ends_the_fall_back_beside_a_fault_that_does_not_end():
+    """INT1 cut for good, and after a loss of supply DEVIDs with ones missing for 500 ms: 5 stays, 15 begins and ends beside it."""
+    _, notes, _, _ = simrun("wires-beside", REST, "--fault", "300ms:noint", "--fault", "1000ms:devid:96:500", "--fault", "1000ms:power:1", "--loop",
+                            "--max-ms", 6000, "--cmd", "4000:i2c 400", "--cmd", "5500:status")
+    told = [note for note in notes if note.startswith("# fault")]
+    assert SLOWED in told and any(re.fullmatch(r"# fault 15 over: after [123]000 ms, 0 lost, sensor at 0x53", note) for note in told), told
+    assert not any(note.startswith("# fault 5 over") for note in told[told.index(SLOWED):]) and any(", fault 5, " in note for note in notes), notes
 
 
 @test
