@@ -6,7 +6,9 @@
 #include <string.h>
 
 #include "adxl345.h"
+#include "app/app.h"
 #include "base/counters.h"
+#include "base/notices.h"
 #include "control/sensor_watch.h"
 #include "path/coast.h"
 #include "path/gravity.h"
@@ -183,6 +185,17 @@ static void move_z(int by_lsb)
     }
 }
 
+/* In every pass as many notices as the queue takes. */
+static void fill_for_ms(double ms)
+{
+    double end_ms = hal_host_now_ms() + ms;
+    while (hal_host_now_ms() < end_ms) {
+        while (notices_add(NOTICE_STATUS, 0)) {
+        }
+        app_pass();
+    }
+}
+
 static void assert_lines(size_t first, size_t last)
 {
     TEST_ASSERT_EQUAL_size_t(first, board_notes_with(first_line, 0));
@@ -296,6 +309,21 @@ static void test_measurements_neither_count_nor_forget(void)
     }
 }
 
+/* A full queue of notices refuses the line: it is told when there is room, and so is the end. */
+static void test_a_full_queue_delays_the_lines_alone(void)
+{
+    start(20, 10000);
+    fill_for_ms(3000);
+    assert_lines(0, 0);
+    board_run_ms(2500);
+    assert_lines(1, 0);
+    move_z(236);
+    fill_for_ms(4000);
+    assert_lines(1, 0);
+    board_run_ms(2500);
+    assert_lines(1, 1);
+}
+
 /* Wires off and on again, values that hang, and a stop: all with a sound sensor. */
 static void test_a_sound_sensor_is_never_accused(void)
 {
@@ -330,6 +358,7 @@ int main(void)
     RUN_TEST(test_nothing_is_reported_in_a_plot);
     RUN_TEST(test_stop_and_go_leave_it_as_it_is);
     RUN_TEST(test_measurements_neither_count_nor_forget);
+    RUN_TEST(test_a_full_queue_delays_the_lines_alone);
     RUN_TEST(test_a_sound_sensor_is_never_accused);
     stream_free(&stream);
     return UNITY_END();
