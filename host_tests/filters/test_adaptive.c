@@ -1,7 +1,7 @@
 /* The guarded adaptive filter: what it does with a ramp, outliers, a burst, a jump; limits of its parameters. */
 #include "adaptive.h"
 #include "support/laws.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { NOISE_LSB = 8 }; /* uniform, +-8 LSB: sigma 4.9 */
 
@@ -11,8 +11,6 @@ void setUp(void)
 {
     random_state = 77u;
 }
-
-void tearDown(void) {}
 
 static int16_t noisy(int16_t level_lsb)
 {
@@ -40,7 +38,7 @@ static int16_t whole(int32_t x_lsb_q16)
 }
 
 /* Far beyond twice the gate nothing is taken: the estimate goes on as if the sample were missing. */
-static void an_isolated_outlier_moves_nothing(void)
+TEST(an_isolated_outlier_moves_nothing)
 {
     filter_t f = settled(100, true);
     (void)filter_update(&f, 92); /* the one before lies on the other side */
@@ -56,7 +54,7 @@ static void an_isolated_outlier_moves_nothing(void)
 }
 
 /* The twin: without the guard it passes with its gain. */
-static void without_the_guard_an_outlier_passes(void)
+TEST(without_the_guard_an_outlier_passes)
 {
     filter_t f = settled(100, false);
     TEST_ASSERT_TRUE(whole(filter_update(&f, 2000)) > 150);
@@ -64,7 +62,7 @@ static void without_the_guard_an_outlier_passes(void)
 }
 
 /* Nine doubled readings, the longest burst that was measured on a shared bus, do not reach `confirm` (12 samples). */
-static void a_burst_of_nine_is_not_believed(void)
+TEST(a_burst_of_nine_is_not_believed)
 {
     filter_t f = settled(250, true);
     for (uint8_t k = 0; k < 9u; k++) {
@@ -79,7 +77,7 @@ static void a_burst_of_nine_is_not_believed(void)
 }
 
 /* A jump that stays is believed with the twelfth sample at the latest, and from then on the estimate is there. */
-static void a_jump_that_stays_is_believed(void)
+TEST(a_jump_that_stays_is_believed)
 {
     filter_t f = settled(0, true);
     bool again = false;
@@ -92,7 +90,7 @@ static void a_jump_that_stays_is_believed(void)
 }
 
 /* A manoeuvre within what motion can do is followed without waiting: 300 LSB/s from rest at 100 Hz, 10 samples late. */
-static void motion_is_followed_and_shortens_the_memory(void)
+TEST(motion_is_followed_and_shortens_the_memory)
 {
     filter_t f = settled(0, true);
     uint32_t slow = f.own.adaptive.k_uq32;
@@ -112,7 +110,7 @@ static void motion_is_followed_and_shortens_the_memory(void)
 }
 
 /* At rest the memory grows by half a sample per sample, to the slowest: k = 2/N falls from 1/2 as 2 / (4 + n/2). */
-static void memory_grows_by_half_a_sample(void)
+TEST(memory_grows_by_half_a_sample)
 {
     filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
@@ -150,7 +148,7 @@ static uint32_t mean_scatter_uq8(bool identify)
  * since a mean size of uniform noise is 0.866 sigma instead of the 0.798 of Gaussian. Sigma is 4.90 LSB (variance
  * (17^2 - 1) / 12); 9 % for chance: three deviations of a mean over 800 terms, of which 31 weigh in each value.
  */
-static void what_identification_off_means(void)
+TEST(what_identification_off_means)
 {
     TEST_ASSERT_EQUAL_UINT32(10u * 256u, mean_scatter_uq8(false));
     uint32_t scatter_uq8 = mean_scatter_uq8(true);
@@ -162,7 +160,7 @@ static void what_identification_off_means(void)
  * Across a gap no sample agrees with the one before it. Of the two one is a term of the scatter, limited to 2.5 times
  * what is expected: 1.5 (1 + k) / 16 more, k <= 0.2.
  */
-static void a_gap_breaks_agreement(void)
+TEST(a_gap_breaks_agreement)
 {
     filter_t f = settled(0, true);
     uint32_t scatter = f.own.adaptive.scatter_lsb_uq24;
@@ -176,7 +174,7 @@ static void a_gap_breaks_agreement(void)
 }
 
 /* A prediction at the end of the range and a sample beyond the gate: both are flagged. */
-static void a_gated_sample_keeps_the_saturation(void)
+TEST(a_gated_sample_keeps_the_saturation)
 {
     filter_t f = settled(100, true);
     f.own.adaptive.gate_sigma_q8 = 8u * 256u;
@@ -189,7 +187,7 @@ static void a_gated_sample_keeps_the_saturation(void)
 }
 
 /* Memories out of reach are limited, not refused: to 3.3 (k = 0.6) and 4096 samples, the shortest to the slowest. */
-static void memories_are_limited(void)
+TEST(memories_are_limited)
 {
     filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
@@ -208,7 +206,7 @@ static void memories_are_limited(void)
     TEST_ASSERT_EQUAL_UINT16(6553, f.own.adaptive.fast_uq16);
 }
 
-static void reset_keeps_the_noise(void)
+TEST(reset_keeps_the_noise)
 {
     filter_t f = settled(100, true);
     filter_t before = f;
@@ -223,7 +221,7 @@ static void reset_keeps_the_noise(void)
 }
 
 /* The one rule for all rates: fast 80 ms and two samples, slow 20 samples and half a second, 3 sigma below 20 Hz. */
-static void defaults_follow_one_rule(void)
+TEST(defaults_follow_one_rule)
 {
     static const uint16_t rates_dhz[] = { 100, 199, 200, 250, 500, 1000, 2000, 4000, 8000, 40000 };
     for (uint8_t i = 0; i < 10u; i++) {
@@ -236,7 +234,7 @@ static void defaults_follow_one_rule(void)
 }
 
 /* A sigma of 3 LSB learnt from noise; a restart that lost it would have the configured 1.7, the root of R = 3. */
-static void restart_keeps_what_was_learnt_of_the_noise(void)
+TEST(restart_keeps_what_was_learnt_of_the_noise)
 {
     filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
@@ -250,23 +248,4 @@ static void restart_keeps_what_was_learnt_of_the_noise(void)
     TEST_ASSERT_TRUE(scatter_lsb_uq24 > 37520000UL); /* sqrt(5) LSB */
     filter_restart(&f);
     TEST_ASSERT_EQUAL_UINT32(scatter_lsb_uq24, f.own.adaptive.scatter_lsb_uq24);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(an_isolated_outlier_moves_nothing);
-    RUN_TEST(without_the_guard_an_outlier_passes);
-    RUN_TEST(a_burst_of_nine_is_not_believed);
-    RUN_TEST(a_jump_that_stays_is_believed);
-    RUN_TEST(motion_is_followed_and_shortens_the_memory);
-    RUN_TEST(memory_grows_by_half_a_sample);
-    RUN_TEST(what_identification_off_means);
-    RUN_TEST(a_gap_breaks_agreement);
-    RUN_TEST(a_gated_sample_keeps_the_saturation);
-    RUN_TEST(memories_are_limited);
-    RUN_TEST(reset_keeps_the_noise);
-    RUN_TEST(defaults_follow_one_rule);
-    RUN_TEST(restart_keeps_what_was_learnt_of_the_noise);
-    return UNITY_END();
 }

@@ -4,7 +4,7 @@
 #include "support/laws.h"
 #include "support/random.h"
 #include "support/roll.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -15,8 +15,6 @@ void setUp(void)
 {
     random_state = SEED;
 }
-void tearDown(void) {}
-
 static reference_adaptive_value_t value_of(const filter_t *f)
 {
     const filter_adaptive_t *a = &f->own.adaptive;
@@ -161,7 +159,7 @@ static void run_case(const case_t *c, int verdicts[5])
     TEST_ASSERT_TRUE(open < SAMPLES / 20);
 }
 
-static void every_step_is_that_of_the_reference(void)
+TEST(every_step_is_that_of_the_reference)
 {
     static const case_t cases[] = {
         { "10 Hz", 100, 768, 1, 12.0, 0.05, false },
@@ -187,7 +185,7 @@ static void every_step_is_that_of_the_reference(void)
  * Starts with a bad read among the first samples, guarded or not: the scatter's opening, term by term. The R that they
  * begin with is 80 times too small.
  */
-static void a_start_with_a_bad_read_is_that_of_the_reference(void)
+TEST(a_start_with_a_bad_read_is_that_of_the_reference)
 {
     int compared = 0;
     for (int start = 0; start < 2000; start++) {
@@ -210,7 +208,7 @@ static void a_start_with_a_bad_read_is_that_of_the_reference(void)
 }
 
 /* k = 2 / memory, share 0.4 k, threshold 2.9 sqrt(share / 2) but at most 0.845; the factor is rounded to 2^-8. */
-static void parameters_are_those_of_the_equations(void)
+TEST(parameters_are_those_of_the_equations)
 {
     static const uint16_t rates_dhz[] = { 100, 250, 500, 1000, 4000, 8000 };
     for (int i = 0; i < 6; i++) {
@@ -230,7 +228,7 @@ static void parameters_are_those_of_the_equations(void)
 }
 
 /* Fading memory: noise gain by the Lyapunov equation, by the impulse response, and in closed form. */
-static void fading_memory_has_its_closed_forms(void)
+TEST(fading_memory_has_its_closed_forms)
 {
     for (int i = 1; i < 60; i++) {
         double k = 0.01 * i;
@@ -279,7 +277,7 @@ static double settled_scatter(int32_t slow_ms, int32_t fast_ms, double bad, int3
  * half of its variance times the curvature 0.55 over 1 - slope, 0.87), and 0.8 % for chance (three standard errors).
  * With one that changes it lies between those of the slowest and the shortest.
  */
-static void the_scatter_settles_where_its_terms_say(void)
+TEST(the_scatter_settles_where_its_terms_say)
 {
     static const int32_t memories_ms[] = { 33, 100, 200, 500 };
     filter_t f;
@@ -316,7 +314,7 @@ static void assert_probed_variance(const filter_t *f, double r_lsb2)
 /*
  * The probe's variance is R times that noise gain, at every memory; identified, R is the scatter's square (8.8 bits).
  */
-static void variance_of_the_probe_is_the_closed_form(void)
+TEST(variance_of_the_probe_is_the_closed_form)
 {
     for (int identify = 0; identify < 2; identify++) {
         filter_t f;
@@ -364,7 +362,7 @@ static void both_mean_squares(roll_profile_t profile, bool identify, roll_window
  * errors of a window's mean), and adaptive without its guard is at most 8 % worse in any window, its noise given or
  * identified.
  */
-static void unguarded_reaches_the_float_filter(void)
+TEST(unguarded_reaches_the_float_filter)
 {
     static const roll_windows_t notes[STILL] = {
         { 0.150, 0.264, 0.169 }, { 0.152, 0.419, 0.156 }, { 0.153, 0.475, 0.163 }, { 0.151, 0.607, 0.182 }
@@ -384,17 +382,4 @@ static void unguarded_reaches_the_float_filter(void)
             TEST_ASSERT_TRUE(f.after <= 1.08 * r.after);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(every_step_is_that_of_the_reference);
-    RUN_TEST(a_start_with_a_bad_read_is_that_of_the_reference);
-    RUN_TEST(parameters_are_those_of_the_equations);
-    RUN_TEST(fading_memory_has_its_closed_forms);
-    RUN_TEST(the_scatter_settles_where_its_terms_say);
-    RUN_TEST(variance_of_the_probe_is_the_closed_form);
-    RUN_TEST(unguarded_reaches_the_float_filter);
-    return UNITY_END();
 }

@@ -1,14 +1,10 @@
 /* af in integers, on the PC and on the chip: what it learns. Against double: test_wide_reference.c. */
 #include "mixture.h"
 #include "support/laws.h"
-#include "unity.h"
+#include "support/test.h"
 
 #define SEED 90210UL
 #define ONE_UQ24 0x1000000UL
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* 100 Hz, R 16 LSB^2. */
 static filter_t made(void)
@@ -21,7 +17,7 @@ static filter_t made(void)
 }
 
 /* With q = 0.85 from the start and nothing learnt yet the first sample is pbf's, bit for bit. */
-static void first_step_is_that_of_pbf(void)
+TEST(first_step_is_that_of_pbf)
 {
     filter_config_t config;
     filter_t f;
@@ -38,7 +34,7 @@ static void first_step_is_that_of_pbf(void)
 }
 
 /* An outlier beyond doubt has p = 0: q = 1/2 (1 - 1/3) after the first, 1/3 (1 - 1/4) after the second, then 1/5. */
-static void outliers_are_learnt_by_hand(void)
+TEST(outliers_are_learnt_by_hand)
 {
     static const uint32_t expected_uq24[] = { ONE_UQ24 / 3, ONE_UQ24 / 4, ONE_UQ24 / 5, ONE_UQ24 / 6 };
     filter_t f = made();
@@ -51,7 +47,7 @@ static void outliers_are_learnt_by_hand(void)
 }
 
 /* Neither start, coasting nor a change of R teaches anything; a reset forgets. */
-static void only_samples_teach(void)
+TEST(only_samples_teach)
 {
     filter_t f = made();
     for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
@@ -74,7 +70,7 @@ static void only_samples_teach(void)
 }
 
 /* For ever clean, for ever spoilt: q stays 1/1024 away from 1 and 0, and the memory ends at 1024 samples. */
-static void what_is_learnt_stays_within_its_margin(void)
+TEST(what_is_learnt_stays_within_its_margin)
 {
     filter_t f = made();
     filter_reset(&f, 0);
@@ -91,7 +87,7 @@ static void what_is_learnt_stays_within_its_margin(void)
 }
 
 /* Three of ten samples are outliers of up to 128 LSB, 32 sigma: about 0.7 are normal. */
-static void share_of_outliers_is_found(void)
+TEST(share_of_outliers_is_found)
 {
     filter_t f = made();
     filter_reset(&f, 0);
@@ -104,15 +100,4 @@ static void share_of_outliers_is_found(void)
     }
     /* outliers within 4 sigma, an eighth of them, pass for normal: 0.74 */
     TEST_ASSERT_UINT32_WITHIN(ONE_UQ24 / 20, ONE_UQ24 / 100 * 73, f.own.mixture.normal_uq24);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(first_step_is_that_of_pbf);
-    RUN_TEST(outliers_are_learnt_by_hand);
-    RUN_TEST(only_samples_teach);
-    RUN_TEST(what_is_learnt_stays_within_its_margin);
-    RUN_TEST(share_of_outliers_is_found);
-    return UNITY_END();
 }

@@ -3,7 +3,7 @@
  * meanwhile and is soon back where one that missed none is. Runs on the PC and on the chip.
  */
 #include "support/filters.h"
-#include "unity.h"
+#include "support/test.h"
 
 /* Where two filters that have recovered may differ: each is within 1/4 LSB and 1/32 for rounding. */
 #define RECOVERED_LSB_Q16 (2 * (65536 / 4 + 65536 / 32))
@@ -15,10 +15,6 @@
 #define DRIFT_LSB_Q16 (65536 / 128)
 
 enum { GAP_MAX = 200, SETTLING = 300, RAMP_LSB = 2 };
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static void make(filter_t *f, uint8_t kind, uint16_t rate_dhz)
 {
@@ -63,7 +59,7 @@ static void assert_recovery_from_all_gaps(uint8_t kind, int16_t slope, bool goes
     }
 }
 
-static void coast_at_rest_and_recover(void)
+TEST(coast_at_rest_and_recover)
 {
     FOR_EACH_KIND(kind)
     {
@@ -71,7 +67,7 @@ static void coast_at_rest_and_recover(void)
     }
 }
 
-static void coast_on_a_ramp_and_recover(void)
+TEST(coast_on_a_ramp_and_recover)
 {
     FOR_EACH_KIND(kind)
     {
@@ -80,20 +76,11 @@ static void coast_on_a_ramp_and_recover(void)
     }
 }
 
-static void coast_through_the_end_of_a_ramp_and_recover(void)
+TEST(coast_through_the_end_of_a_ramp_and_recover)
 {
     FOR_EACH_KIND(kind)
     {
         assert_recovery_from_all_gaps(kind, RAMP_LSB, false);
         assert_recovery_from_all_gaps(kind, -RAMP_LSB, false);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(coast_at_rest_and_recover);
-    RUN_TEST(coast_on_a_ramp_and_recover);
-    RUN_TEST(coast_through_the_end_of_a_ramp_and_recover);
-    return UNITY_END();
 }

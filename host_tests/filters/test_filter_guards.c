@@ -7,13 +7,9 @@
 #include "noise.h"
 #include "support/filters.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/test.h"
 
 #define ONE_UQ26 0x4000000u
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static void start(filter_t *f, uint32_t p11, uint32_t p12, uint32_t p22)
 {
@@ -27,7 +23,7 @@ static void start(filter_t *f, uint32_t p11, uint32_t p12, uint32_t p22)
  * P / R = (0, 1; 1, 1/2) is no covariance. Predicted: P12 = 1.5, P11 = 2.5, P22 = 0.5 + q; update:
  * P22 - P12^2 / (P11 + 1) = 0.5 - 0.643 + q < 0: rounded to 0, not wrapped to 63.9.
  */
-static void test_p22_does_not_wrap_below_zero(void)
+TEST(test_p22_does_not_wrap_below_zero)
 {
     filter_t f;
     start(&f, 0, ONE_UQ26, ONE_UQ26 / 2);
@@ -41,7 +37,7 @@ static void test_p22_does_not_wrap_below_zero(void)
  * The twin: with P22 = 1 the update leaves 1 - 0.643 + q, exact to the gain's 1.5 counts of 2^-16 (0.643 x 3.5 x
  * 2.3e-5).
  */
-static void test_p22_that_stays_positive_is_kept(void)
+TEST(test_p22_that_stays_positive_is_kept)
 {
     filter_t f;
     start(&f, 0, ONE_UQ26, ONE_UQ26);
@@ -62,7 +58,7 @@ static double wanted_r(const noise_t *n)
  * R is passed on when it has left the one in force by more than an eighth, and only then: the amplitude of the readings
  * rises and falls, so that both happen often.
  */
-static void test_r_follows_with_a_hysteresis_of_an_eighth(void)
+TEST(test_r_follows_with_a_hysteresis_of_an_eighth)
 {
     noise_t n;
     filter_noise_init(&n, 1000, false);
@@ -107,7 +103,7 @@ static void assert_clamped(uint8_t kind, uint8_t before, int16_t z_lsb, int16_t 
     TEST_ASSERT_EQUAL_MEMORY(&of_nearest, &f, sizeof f);
 }
 
-static void test_a_sample_outside_the_range_is_clamped_and_flagged(void)
+TEST(test_a_sample_outside_the_range_is_clamped_and_flagged)
 {
     FOR_EACH_KIND(kind)
     {
@@ -120,7 +116,7 @@ static void test_a_sample_outside_the_range_is_clamped_and_flagged(void)
     }
 }
 
-static void test_a_sample_at_the_end_of_the_range_is_not_flagged(void)
+TEST(test_a_sample_at_the_end_of_the_range_is_not_flagged)
 {
     static const int16_t ends[] = { 4095, -4096 };
     FOR_EACH_KIND(kind)
@@ -134,15 +130,4 @@ static void test_a_sample_at_the_end_of_the_range_is_not_flagged(void)
             }
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_p22_does_not_wrap_below_zero);
-    RUN_TEST(test_p22_that_stays_positive_is_kept);
-    RUN_TEST(test_r_follows_with_a_hysteresis_of_an_eighth);
-    RUN_TEST(test_a_sample_outside_the_range_is_clamped_and_flagged);
-    RUN_TEST(test_a_sample_at_the_end_of_the_range_is_not_flagged);
-    return UNITY_END();
 }

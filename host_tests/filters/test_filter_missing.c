@@ -3,7 +3,7 @@
  * (tracker.h), and a filter that warms up again.
  */
 #include "support/filters.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <string.h>
 
@@ -17,8 +17,6 @@ void setUp(void)
 {
     random_state = SEED;
 }
-
-void tearDown(void) {}
 
 static void make(filter_t *f, uint8_t kind)
 {
@@ -67,7 +65,7 @@ static void assert_damped(uint8_t kind, int16_t slope_lsb)
     }
 }
 
-static void test_damp_halves_the_rate_and_moves_nothing(void)
+TEST(test_damp_halves_the_rate_and_moves_nothing)
 {
     FOR_EACH_KIND(kind)
     {
@@ -77,7 +75,7 @@ static void test_damp_halves_the_rate_and_moves_nothing(void)
 }
 
 /* R is 3 LSB^2 at 100 Hz, three sigmas 5.2 LSB: a rate of 5 LSB per sample may be noise, one of 6 is none. */
-static void test_a_gap_stops_only_a_rate_that_may_be_noise(void)
+TEST(test_a_gap_stops_only_a_rate_that_may_be_noise)
 {
     FOR_EACH_KIND(kind)
     {
@@ -99,7 +97,7 @@ static void test_a_gap_stops_only_a_rate_that_may_be_noise(void)
 }
 
 /* Halved with its variance: the sample behind a gap is believed less than without, so its noise makes no jump. */
-static void test_damp_leaves_less_gain_after_a_gap(void)
+TEST(test_damp_leaves_less_gain_after_a_gap)
 {
     FOR_EACH_KIND(kind)
     {
@@ -125,7 +123,7 @@ static void test_damp_leaves_less_gain_after_a_gap(void)
 }
 
 /* The start of the filters lies where their estimates will be: a sample missing in it changes none of them. */
-static void test_a_missing_sample_leaves_a_start_alone(void)
+TEST(test_a_missing_sample_leaves_a_start_alone)
 {
     FOR_EACH_KIND_WITH_MEDIAN(kind)
     {
@@ -143,7 +141,7 @@ static void test_a_missing_sample_leaves_a_start_alone(void)
 }
 
 /* Whatever it went through: from the next sample on it is a filter that was begun just now. */
-static void test_restart_is_as_after_init(void)
+TEST(test_restart_is_as_after_init)
 {
     FOR_EACH_KIND(kind)
     {
@@ -183,7 +181,7 @@ static uint16_t restarts_at_the_rail(filter_t *f, uint8_t kind, bool missing)
 }
 
 /* Those that gate; the others take a sample at the rail as any other. */
-static void test_samples_reported_missing_restart_no_filter(void)
+TEST(test_samples_reported_missing_restart_no_filter)
 {
     FOR_EACH_KIND(kind)
     {
@@ -196,7 +194,7 @@ static void test_samples_reported_missing_restart_no_filter(void)
 }
 
 /* The samples at the rail do not count: it takes those of a run to restart. */
-static void test_a_filter_restarts_after_the_rail(void)
+TEST(test_a_filter_restarts_after_the_rail)
 {
     FOR_EACH_KIND(kind)
     {
@@ -237,7 +235,7 @@ static unsigned samples_to_restart(uint8_t kind, unsigned refused, unsigned miss
 /*
  * Missing ones in the run that restarts a filter, as those at the rail are, are worth nothing, however many they are.
  */
-static void test_missing_samples_do_not_count_in_a_run(void)
+TEST(test_missing_samples_do_not_count_in_a_run)
 {
     unsigned restarting = 0;
     FOR_EACH_KIND(kind)
@@ -253,7 +251,7 @@ static void test_missing_samples_do_not_count_in_a_run(void)
     TEST_ASSERT_TRUE(restarting > 0U);
 }
 /* However long samples were missing before: a filter that is reset begins its next gap anew. */
-static void test_a_reset_ends_the_hold(void)
+TEST(test_a_reset_ends_the_hold)
 {
     for (uint8_t kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++) {
         filter_t held, fresh;
@@ -269,19 +267,4 @@ static void test_a_reset_ends_the_hold(void)
         TEST_ASSERT_EQUAL_UINT8(fresh.quarters, held.quarters);
         TEST_ASSERT_EQUAL_UINT32(probed(&fresh).p_lsb2_q8, probed(&held).p_lsb2_q8);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_damp_halves_the_rate_and_moves_nothing);
-    RUN_TEST(test_a_gap_stops_only_a_rate_that_may_be_noise);
-    RUN_TEST(test_damp_leaves_less_gain_after_a_gap);
-    RUN_TEST(test_a_missing_sample_leaves_a_start_alone);
-    RUN_TEST(test_restart_is_as_after_init);
-    RUN_TEST(test_samples_reported_missing_restart_no_filter);
-    RUN_TEST(test_a_filter_restarts_after_the_rail);
-    RUN_TEST(test_missing_samples_do_not_count_in_a_run);
-    RUN_TEST(test_a_reset_ends_the_hold);
-    return UNITY_END();
 }

@@ -3,7 +3,7 @@
  * the PC and on the chip. Facts about single laws live in support_law_NAME.c.
  */
 #include "support/filters.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <string.h>
 
@@ -15,8 +15,6 @@ void setUp(void)
 {
     random_state = SEED;
 }
-
-void tearDown(void) {}
 
 static void make(filter_t *f, uint8_t kind, uint16_t rate_dhz)
 {
@@ -55,7 +53,7 @@ static void assert_same_probe(const filter_t *a, const filter_t *b)
     TEST_ASSERT_EQUAL_MEMORY(&of_a, &of_b, sizeof of_a);
 }
 
-static void every_name_finds_its_kind_and_no_other_does(void)
+TEST(every_name_finds_its_kind_and_no_other_does)
 {
     FOR_EACH_KIND(kind)
     {
@@ -75,7 +73,7 @@ static void every_name_finds_its_kind_and_no_other_does(void)
 }
 
 /* Sensor rates, and both ends of the legal range of rates. */
-static void defaults_are_legal_at_every_rate(void)
+TEST(defaults_are_legal_at_every_rate)
 {
     static const uint16_t rates[] = { 50, 125, 250, 500, 1000, 2000, 4000, 8000, 40000 };
     FOR_EACH_KIND(kind)
@@ -87,7 +85,7 @@ static void defaults_are_legal_at_every_rate(void)
     }
 }
 
-static void there_is_no_law_of_an_unknown_kind(void)
+TEST(there_is_no_law_of_an_unknown_kind)
 {
     TEST_ASSERT_NULL(filter_listed(FILTER_KIND_COUNT));
     TEST_ASSERT_NULL(filter_listed((filter_kind_t)(FILTER_KIND_COUNT + 1)));
@@ -121,7 +119,7 @@ static void try_value(uint8_t kind, uint8_t index, int32_t value)
 }
 
 /* Each descriptor's limits, one step inside and outside, zero, and the extremes of the field. */
-static void parameters_are_taken_within_their_range_only(void)
+TEST(parameters_are_taken_within_their_range_only)
 {
     FOR_EACH_KIND(kind)
     {
@@ -139,7 +137,7 @@ static void parameters_are_taken_within_their_range_only(void)
     }
 }
 
-static void rates_outside_5_to_4000_hz_are_refused(void)
+TEST(rates_outside_5_to_4000_hz_are_refused)
 {
     static const uint16_t rates[] = { 0, 49, 40001, 65535 };
     FOR_EACH_KIND(kind)
@@ -162,7 +160,7 @@ static void assert_constant_stays(filter_t *f, int16_t level, uint16_t samples)
 }
 
 /* An innovation of 0 moves nothing: exact, with any gain. */
-static void constant_in_constant_out_after_reset(void)
+TEST(constant_in_constant_out_after_reset)
 {
     static const int16_t levels[] = { -4096, -1, 0, 1, 255, 4095 };
     FOR_EACH_KIND(kind)
@@ -181,7 +179,7 @@ static void constant_in_constant_out_after_reset(void)
 }
 
 /* Medians by hand: {9}, {9,-3}, {9,-3,500}, {9,-3,500,8}, {9,-3,500,8,7}; twice each to stay whole. */
-static void warm_up_puts_out_the_running_median(void)
+TEST(warm_up_puts_out_the_running_median)
 {
     static const int16_t in[] = { 9, -3, 500, 8, 7 };
     static const int16_t twice_median[] = { 18, 6, 18, 17, 16 };
@@ -199,7 +197,7 @@ static void warm_up_puts_out_the_running_median(void)
     }
 }
 
-static void a_missing_sample_in_warm_up_keeps_the_median(void)
+TEST(a_missing_sample_in_warm_up_keeps_the_median)
 {
     FOR_EACH_KIND_WITH_MEDIAN(kind)
     {
@@ -218,7 +216,7 @@ static int32_t predicted(filter_t *f)
 }
 
 /* Steps, noise and missing samples; never -4096, whose mirror image the sensor does not have. */
-static void mirrored_input_gives_mirrored_output(void)
+TEST(mirrored_input_gives_mirrored_output)
 {
     FOR_EACH_KIND(kind)
     {
@@ -265,7 +263,7 @@ static int32_t random_call(filter_t *f)
 }
 
 /* Whatever came before, a start half collected included: nothing is left but the level. */
-static void reset_forgets_all_but_the_level(void)
+TEST(reset_forgets_all_but_the_level)
 {
     FOR_EACH_KIND(kind)
     {
@@ -288,7 +286,7 @@ static void reset_forgets_all_but_the_level(void)
 }
 
 /* The same calls for the original and its copy, by turns, so that nothing outside the state could tell them apart. */
-static void copy_goes_on_like_the_original(void)
+TEST(copy_goes_on_like_the_original)
 {
     FOR_EACH_KIND(kind)
     {
@@ -314,7 +312,7 @@ static void copy_goes_on_like_the_original(void)
 }
 
 /* A stream in one go, and in two blocks of which the second meets a copy of the state while the original is spoilt. */
-static void two_halves_are_the_whole(void)
+TEST(two_halves_are_the_whole)
 {
     FOR_EACH_KIND(kind)
     {
@@ -345,7 +343,7 @@ static void two_halves_are_the_whole(void)
 }
 
 /* More of this, on the PC and on the chip alike: bitexact/filter_sequence.c. */
-static void any_calls_stay_within_bounds(void)
+TEST(any_calls_stay_within_bounds)
 {
     for (uint16_t run = 0; run < ON_PC_OR_CHIP(2000, 20); run++) {
         filter_t f;
@@ -357,7 +355,7 @@ static void any_calls_stay_within_bounds(void)
 }
 
 /* The largest stretch of one call after the other: a filter on its way to the rail and left to predict. */
-static void predicting_for_ever_stays_within_bounds(void)
+TEST(predicting_for_ever_stays_within_bounds)
 {
     FOR_EACH_KIND(kind)
     {
@@ -371,24 +369,4 @@ static void predicting_for_ever_stays_within_bounds(void)
             TEST_ASSERT_TRUE((f.flags & FILTER_COASTED) != 0U);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(every_name_finds_its_kind_and_no_other_does);
-    RUN_TEST(defaults_are_legal_at_every_rate);
-    RUN_TEST(there_is_no_law_of_an_unknown_kind);
-    RUN_TEST(parameters_are_taken_within_their_range_only);
-    RUN_TEST(rates_outside_5_to_4000_hz_are_refused);
-    RUN_TEST(constant_in_constant_out_after_reset);
-    RUN_TEST(warm_up_puts_out_the_running_median);
-    RUN_TEST(a_missing_sample_in_warm_up_keeps_the_median);
-    RUN_TEST(mirrored_input_gives_mirrored_output);
-    RUN_TEST(reset_forgets_all_but_the_level);
-    RUN_TEST(copy_goes_on_like_the_original);
-    RUN_TEST(two_halves_are_the_whole);
-    RUN_TEST(any_calls_stay_within_bounds);
-    RUN_TEST(predicting_for_ever_stays_within_bounds);
-    return UNITY_END();
 }

@@ -1,13 +1,9 @@
 /* kf in integers, on the PC and on the chip; against the double reference: test_kf_reference.c. */
 #include "support/laws.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test.h"
 
 /* q22 = q T^3 / R at 100 Hz, R 3, q 10000: 1e4 x 1e-6 / 3 = 3.3333e-3 = 223696.2 / 2^26; after R x 4 a quarter. */
-static void noise_scales_the_drive(void)
+TEST(noise_scales_the_drive)
 {
     filter_config_t config = { 1000, { [KF_R_LSB2_Q8] = 768, [KF_Q_LSB2_S3] = 10000 } };
     filter_t f;
@@ -18,7 +14,7 @@ static void noise_scales_the_drive(void)
 }
 
 /* Coasting is x += rate: three steps of a settled ramp of 2 LSB per sample. */
-static void coast_goes_on_at_the_rate(void)
+TEST(coast_goes_on_at_the_rate)
 {
     filter_config_t config = filter_defaults(&filter_law_kf, 1000);
     filter_t f;
@@ -33,7 +29,7 @@ static void coast_goes_on_at_the_rate(void)
 }
 
 /* After a reset the gain is that of a filter which has read the same value for long. */
-static void reset_is_as_if_read_for_ever(void)
+TEST(reset_is_as_if_read_for_ever)
 {
     filter_t read;
     filter_t reset;
@@ -56,7 +52,7 @@ static void reset_is_as_if_read_for_ever(void)
 }
 
 /* On its way to the rail and left to coast: it ends there, and says so. */
-static void coasting_ends_at_the_bound(void)
+TEST(coasting_ends_at_the_bound)
 {
     for (int8_t sign = -1; sign <= 1; sign = (int8_t)(sign + 2)) {
         filter_config_t config = filter_defaults(&filter_law_kf, 125);
@@ -74,7 +70,7 @@ static void coasting_ends_at_the_bound(void)
 }
 
 /* Any 32-bit words: the state stands within the bounds of kalman.h, and stays there. */
-static void begins_within_its_bounds(void)
+TEST(begins_within_its_bounds)
 {
     filter_config_t config = filter_defaults(&filter_law_kf, 1000);
     filter_t f;
@@ -104,15 +100,4 @@ static void begins_within_its_bounds(void)
             TEST_ASSERT_LESS_OR_EQUAL_UINT32(f.own.kalman.p.p11 + rounding, f.own.kalman.p.p12 >> 2);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(noise_scales_the_drive);
-    RUN_TEST(coast_goes_on_at_the_rate);
-    RUN_TEST(reset_is_as_if_read_for_ever);
-    RUN_TEST(coasting_ends_at_the_bound);
-    RUN_TEST(begins_within_its_bounds);
-    return UNITY_END();
 }

@@ -1,12 +1,8 @@
 /* kf3 in integers, on the PC and on the chip; against the double reference: test_kf3_reference.c. */
 #include "support/laws.h"
-#include "unity.h"
+#include "support/test.h"
 
 #define SEED 8004UL
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static filter_t made(uint16_t rate_dhz, int32_t r_lsb2_q8, int32_t q_lsb2_s5)
 {
@@ -28,7 +24,7 @@ static filter_t made_default(uint16_t rate_dhz)
  * q33 = q T^5 / R, in 2^-28: 1e7 x 3.2e-9 / 3 = 0.010667 at 50 Hz; 1e6 x 1e-10 / 3 x 256 = 0.0085333 at 100 Hz, where
  * the acceleration is counted in sixteenths. 16 roundings of 2^-14.
  */
-static void noise_scales_the_drive(void)
+TEST(noise_scales_the_drive)
 {
     filter_t f = made(500, 768, 10000000);
     TEST_ASSERT_UINT32_WITHIN(2863311UL / 1024U, 2863311UL, f.own.kf3.q33_uq28);
@@ -38,7 +34,7 @@ static void noise_scales_the_drive(void)
     TEST_ASSERT_UINT32_WITHIN(2290649UL / 1024U, 2290649UL, f.own.kf3.q33_uq28);
 }
 
-static void drive_keeps_to_its_range(void)
+TEST(drive_keeps_to_its_range)
 {
     TEST_ASSERT_EQUAL_UINT32(0x10000000UL, made(50, 3, 1000000000).own.kf3.q33_uq28);
     TEST_ASSERT_EQUAL_UINT32(0x10000000UL, made(999, 3, 1000000000).own.kf3.q33_uq28);
@@ -51,7 +47,7 @@ static void drive_keeps_to_its_range(void)
  * The sixth sample at 50 Hz, R 1.5: q33 = 3e5 x 3.2e-9 / 1.5 = 0.00064; P33 = 1/32 + q33 = 0.03189, P23 the same, P22 =
  * P12 = 1/2 + P33 = 0.53189, P11 = 1.53189, w1 = P11 / (P11 + 1) = 0.60504, w2 = 0.21008, w3 = 0.012595.
  */
-static void start_is_that_of_the_recursion(void)
+TEST(start_is_that_of_the_recursion)
 {
     filter_t f = made(500, 384, 300000);
     for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
@@ -77,7 +73,7 @@ static int16_t parabola(int16_t k, int16_t sign)
  * forgotten the start; at 100 Hz, q33 1e-5, the pole at 0.929 has left 1e-4 of what the start was off after 126
  * samples, at most 64 LSB.
  */
-static void follows_constant_acceleration_without_lag(void)
+TEST(follows_constant_acceleration_without_lag)
 {
     for (int16_t sign = -1; sign <= 1; sign = (int16_t)(sign + 2)) {
         filter_t slow = made(500, 384, 30000000);
@@ -103,7 +99,7 @@ static void follows_constant_acceleration_without_lag(void)
 }
 
 /* scipy's steady gains at q33 = 1e-5: the answer to a step peaks at 1.26681 at its sample 12, within 2 % from 46 on. */
-static void step_is_answered_as_by_the_steady_gains(void)
+TEST(step_is_answered_as_by_the_steady_gains)
 {
     filter_t f = made(1000, 768, 300000);
     for (uint16_t k = 0; k < 400; k++) {
@@ -130,7 +126,7 @@ static void step_is_answered_as_by_the_steady_gains(void)
  * later along the straight line, because the acceleration is not believed any more.
  */
 /* Rate and acceleration halved: P is that of (x, v / 2, a / 2). */
-static void damp_halves_what_moves_and_its_covariance(void)
+TEST(damp_halves_what_moves_and_its_covariance)
 {
     filter_t f;
     filter_config_t config = filter_defaults(&filter_law_kf3, 1000);
@@ -151,7 +147,7 @@ static void damp_halves_what_moves_and_its_covariance(void)
     TEST_ASSERT_EQUAL_UINT32(f.own.kf3.p33_uq28 / 4U, damped.own.kf3.p33_uq28);
 }
 
-static void coast_goes_on_along_the_parabola_and_then_the_line(void)
+TEST(coast_goes_on_along_the_parabola_and_then_the_line)
 {
     filter_t f = made(1000, 768, 300000);
     for (int16_t k = 0; k <= 100; k++) {
@@ -175,7 +171,7 @@ static void coast_goes_on_along_the_parabola_and_then_the_line(void)
  * 10,000 samples missing in motion: it stands at the bound, tells once, and is back 117 samples after its end (double
  * recursion of P, held at P11 = 4.17, from 4608 LSB off at rest to within 1/4 LSB), and for good.
  */
-static void comes_back_from_a_gap_of_ten_thousand(void)
+TEST(comes_back_from_a_gap_of_ten_thousand)
 {
     for (int32_t sign = -1; sign <= 1; sign += 2) {
         filter_t f = made(1000, 768, 300000);
@@ -200,7 +196,7 @@ static void comes_back_from_a_gap_of_ten_thousand(void)
 }
 
 /* After a reset the gain is that of a filter which has read the same value for long. */
-static void reset_is_as_if_read_for_ever(void)
+TEST(reset_is_as_if_read_for_ever)
 {
     filter_t read = made(1000, 16 * 256, 300000);
     filter_t reset = read;
@@ -240,7 +236,7 @@ static void assert_corner(uint16_t rate_dhz, int32_t r_lsb2_q8, int32_t q_lsb2_s
     TEST_ASSERT_INT32_WITHIN(65536 / 16, 1000L * 65536, f.x_lsb_q16);
 }
 
-static void extreme_parameters_stay_within_bounds_and_settle(void)
+TEST(extreme_parameters_stay_within_bounds_and_settle)
 {
     static const uint16_t rates[] = { 50, 999, 1000, 40000 };
     uint32_t random = SEED;
@@ -251,7 +247,7 @@ static void extreme_parameters_stay_within_bounds_and_settle(void)
 }
 
 /* P at its widest in every element, as after no legal history: one update brings it where it can be predicted. */
-static void any_covariance_can_be_predicted_after_an_update(void)
+TEST(any_covariance_can_be_predicted_after_an_update)
 {
     const uint32_t one_uq28 = 0x10000000UL;
     filter_t f = made(500, 384, 300000);
@@ -269,21 +265,4 @@ static void any_covariance_can_be_predicted_after_an_update(void)
                      f.own.kf3.p13_uq28 < one_uq28 && f.own.kf3.p23_uq28 < one_uq28 && f.own.kf3.p33_uq28 < one_uq28;
         TEST_ASSERT_TRUE(small);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(noise_scales_the_drive);
-    RUN_TEST(drive_keeps_to_its_range);
-    RUN_TEST(start_is_that_of_the_recursion);
-    RUN_TEST(follows_constant_acceleration_without_lag);
-    RUN_TEST(step_is_answered_as_by_the_steady_gains);
-    RUN_TEST(damp_halves_what_moves_and_its_covariance);
-    RUN_TEST(coast_goes_on_along_the_parabola_and_then_the_line);
-    RUN_TEST(comes_back_from_a_gap_of_ten_thousand);
-    RUN_TEST(reset_is_as_if_read_for_ever);
-    RUN_TEST(extreme_parameters_stay_within_bounds_and_settle);
-    RUN_TEST(any_covariance_can_be_predicted_after_an_update);
-    return UNITY_END();
 }

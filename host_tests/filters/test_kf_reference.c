@@ -2,7 +2,7 @@
 #include "reference/filters.h"
 #include "support/filters.h"
 #include "support/own_model.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,10 +10,6 @@
 
 #define SEED 31
 #define GOLDEN "../shared/reference/golden_mls.csv"
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* Table 1 of paper 002: T 0.0247, R 0.0064, Q on the rate 0.0009, start (2.8, 0.008) with P diag(0.7, 0.04). */
 static reference_filter_t table_1(void)
@@ -35,7 +31,7 @@ static void settle(reference_filter_t *f)
 }
 
 /* robust-filters: steady posterior and gain of the Kalman filter; the linear robust filter's: test_lrf_reference.c. */
-static void reference_settles_where_the_paper_does(void)
+TEST(reference_settles_where_the_paper_does)
 {
     reference_filter_t kf = table_1();
     settle(&kf);
@@ -48,7 +44,7 @@ static void reference_settles_where_the_paper_does(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 3.819e-2, 3.819e-2, reference_lyapunov(&kf, r_mixed));
 }
 
-static void reference_follows_the_golden_rows(void)
+TEST(reference_follows_the_golden_rows)
 {
     FILE *file = fopen(GOLDEN, "r");
     if (file == NULL) {
@@ -96,7 +92,7 @@ static double gain_bound(double w1, double q22_counts)
     return 1.5 / 65536.0 / w1 + w1 * 0.5 * (4.0 / 16384.0 + 1.0 / q22_counts);
 }
 
-static void gains_equal_the_reference(void)
+TEST(gains_equal_the_reference)
 {
     static const uint16_t rates[] = { 125, 250, 500, 1000, 2000, 4000, 8000 };
     for (int i = 0; i < 7; i++) {
@@ -126,7 +122,7 @@ static void gains_equal_the_reference(void)
  * rounding, through a filter whose error memory is 1 / w1 samples: |dx| <= (dw1 |r| + w1 / 256) / w1, |r| <= 5 sqrt(S
  * R).
  */
-static void estimate_equals_the_reference(void)
+TEST(estimate_equals_the_reference)
 {
     static const uint16_t rates[] = { 125, 1000, 4000, 8000 };
     test_random_t random;
@@ -149,7 +145,7 @@ static void estimate_equals_the_reference(void)
     }
 }
 
-static void probe_reports_the_variance(void)
+TEST(probe_reports_the_variance)
 {
     filter_config_t config = { 1000, { [KF_R_LSB2_Q8] = 16 * 256, [KF_Q_LSB2_S3] = 10000 } };
     filter_t f;
@@ -171,7 +167,7 @@ static void probe_reports_the_variance(void)
  * At every rate of the sensor, and with so much noise that q T^3 / R is the least: as good as in double, and S is the
  * innovations' variance.
  */
-static void as_good_as_in_double_on_its_own_model(void)
+TEST(as_good_as_in_double_on_its_own_model)
 {
     static const struct {
         uint16_t rate_dhz;
@@ -187,16 +183,4 @@ static void as_good_as_in_double_on_its_own_model(void)
         TEST_ASSERT_DOUBLE_WITHIN(0.041, 1.0, found.nis); /* 5 sigma of 30,000 squares */
         TEST_ASSERT_TRUE(found.gated == 0.0);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(reference_settles_where_the_paper_does);
-    RUN_TEST(reference_follows_the_golden_rows);
-    RUN_TEST(gains_equal_the_reference);
-    RUN_TEST(estimate_equals_the_reference);
-    RUN_TEST(probe_reports_the_variance);
-    RUN_TEST(as_good_as_in_double_on_its_own_model);
-    return UNITY_END();
 }

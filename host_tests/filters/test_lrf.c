@@ -1,12 +1,8 @@
 /* lrf in integers, on the PC and on the chip; against the double reference: test_lrf_reference.c. */
 #include "support/laws.h"
-#include "unity.h"
+#include "support/test.h"
 
 #define SEED 4713UL
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static filter_config_t config_100hz(void)
 {
@@ -22,7 +18,7 @@ static filter_t made(const filter_config_t *config)
 }
 
 /* (40) by hand: N^2 - q1 (N^2 - 1) = 400 - 0.85 x 399 = 60.85; 9 - 0.5 x 8 = 5; N = 1: 1. In 2^-16. */
-static void mean_variance_is_that_of_the_formula(void)
+TEST(mean_variance_is_that_of_the_formula)
 {
     static const struct {
         uint16_t clean_uq16, ratio_uq8;
@@ -40,7 +36,7 @@ static void mean_variance_is_that_of_the_formula(void)
     }
 }
 
-static void with_ratio_1_it_is_the_kalman_filter(void)
+TEST(with_ratio_1_it_is_the_kalman_filter)
 {
     filter_config_t config = config_100hz();
     config.value[LRF_RATIO_UQ8] = 256;
@@ -60,7 +56,7 @@ static void with_ratio_1_it_is_the_kalman_filter(void)
 }
 
 /* What lrf is: kf whose R is R_L, to the bit; here 5 R = 15 LSB^2. */
-static void it_is_the_kalman_filter_of_the_mean_variance(void)
+TEST(it_is_the_kalman_filter_of_the_mean_variance)
 {
     filter_config_t config = config_100hz();
     config.value[LRF_R_LSB2_Q8] = 3U * 256U;
@@ -78,7 +74,7 @@ static void it_is_the_kalman_filter_of_the_mean_variance(void)
 }
 
 /* 1000 LSB^2 x 1024 is beyond the format: 65,536 LSB^2 less a count then, as kf.c says; R = 64 LSB^2 x 1014 is not. */
-static void mean_variance_ends_at_its_limit(void)
+TEST(mean_variance_ends_at_its_limit)
 {
     filter_config_t config = config_100hz();
     config.value[LRF_CLEAN_UQ16] = 656;
@@ -92,7 +88,7 @@ static void mean_variance_ends_at_its_limit(void)
 }
 
 /* Warming up the probe tells R_L for the variance of a sample: here 5 x 3 LSB^2. */
-static void probe_reports_the_mean_variance(void)
+TEST(probe_reports_the_mean_variance)
 {
     filter_config_t config = config_100hz();
     config.value[LRF_R_LSB2_Q8] = 3U * 256U;
@@ -103,15 +99,4 @@ static void probe_reports_the_mean_variance(void)
     filter_probe(&f, &probe);
     TEST_ASSERT_EQUAL_UINT32(15U * 256U, probe.p_lsb2_q8);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, probe.gate_lsb2_q8);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(mean_variance_is_that_of_the_formula);
-    RUN_TEST(with_ratio_1_it_is_the_kalman_filter);
-    RUN_TEST(it_is_the_kalman_filter_of_the_mean_variance);
-    RUN_TEST(mean_variance_ends_at_its_limit);
-    RUN_TEST(probe_reports_the_mean_variance);
-    return UNITY_END();
 }

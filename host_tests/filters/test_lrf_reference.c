@@ -1,7 +1,7 @@
 /* lrf against Eigen: the reference against paper 002's numbers, the fixed-point filter against the reference. */
 #include "reference/filters.h"
 #include "support/filters.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,10 +11,6 @@
 #define SEED 32
 #define GOLDEN "../shared/reference/golden_mls.csv"
 #define FACTOR 60.85 /* q1 (1 - N^2) + N^2 at q1 = 0.85, N = 20 */
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* Table 1 of paper 002. */
 static reference_filter_t table_1(double factor)
@@ -36,7 +32,7 @@ static void settle(reference_filter_t *f)
 }
 
 /* 2.06 with outliers, 0.1715 without (by Lyapunov, notes section 3), to 1e-3 of what their four-digit parts give. */
-static void variance_ratios_are_those_of_the_notes(void)
+TEST(variance_ratios_are_those_of_the_notes)
 {
     reference_filter_t plain = table_1(1.0);
     reference_filter_t lrf = table_1(FACTOR);
@@ -54,7 +50,7 @@ static void variance_ratios_are_those_of_the_notes(void)
 }
 
 /* Columns k, y, true, outlier, four of KF, then four of LRF. */
-static void reference_follows_the_golden_rows(void)
+TEST(reference_follows_the_golden_rows)
 {
     FILE *file = fopen(GOLDEN, "r");
     if (file == NULL) {
@@ -93,7 +89,7 @@ static double steady_gain(filter_t *f)
  * Table 1 in the units of the library: q T^3 / R = Q T^2 / R = 8.5794e-5 at 100 Hz, R = 100 LSB^2 and q = 8579. The
  * steady gains within 0.5 % of the paper's, 0.12730 (N = 1) and 0.0476.
  */
-static void steady_gains_are_those_of_the_paper(void)
+TEST(steady_gains_are_those_of_the_paper)
 {
     reference_filter_t reference = table_1(FACTOR);
     settle(&reference);
@@ -109,7 +105,7 @@ static void steady_gains_are_those_of_the_paper(void)
 }
 
 /* The bound of test_kf_reference.c, with R_L for R: 2 (dw1 |r| + w1 / 256) / w1, |r| up to the outliers' 60 sigma. */
-static void estimate_equals_the_reference(void)
+TEST(estimate_equals_the_reference)
 {
     test_random_t random;
     random_seed(&random, SEED);
@@ -138,7 +134,7 @@ static void estimate_equals_the_reference(void)
  * Where the header says that the core's smallest q T^3 / R_L binds: R is 0.03 LSB^2 per Hz, so 1e4 / f^3 / (60.85 x
  * 0.03 f) = 6e-8 at f = 550 Hz.
  */
-static void smallest_gain_binds_where_the_header_says(void)
+TEST(smallest_gain_binds_where_the_header_says)
 {
     filter_t f;
     filter_config_t config = filter_defaults(&filter_law_lrf, 5100); /* 5.4 counts of 2^-26 */
@@ -148,15 +144,4 @@ static void smallest_gain_binds_where_the_header_says(void)
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
     TEST_ASSERT_EQUAL_UINT32(4, f.own.kalman.q22_uq26);
     TEST_ASSERT_DOUBLE_WITHIN(0.0005, 0.022, steady_gain(&f));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(variance_ratios_are_those_of_the_notes);
-    RUN_TEST(reference_follows_the_golden_rows);
-    RUN_TEST(steady_gains_are_those_of_the_paper);
-    RUN_TEST(estimate_equals_the_reference);
-    RUN_TEST(smallest_gain_binds_where_the_header_says);
-    return UNITY_END();
 }

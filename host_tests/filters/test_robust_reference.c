@@ -1,6 +1,6 @@
 /* The double references of paper 002 against the golden rows, exact covariances and each other. */
 #include "reference/robust.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,10 +10,6 @@
 #define GOLDEN "../shared/reference/golden_mls.csv"
 #define GOLDEN_FILTERS 9
 #define FIRST_COLUMN 4
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* Order of the columns: four per filter. */
 static robust_reference_t golden_filter(int column)
@@ -52,7 +48,7 @@ static void compare(robust_reference_t *filters, const double *cells)
     }
 }
 
-static void golden_rows_are_reproduced(void)
+TEST(golden_rows_are_reproduced)
 {
     FILE *file = fopen(GOLDEN, "r");
     if (file == NULL) {
@@ -80,7 +76,7 @@ static void golden_rows_are_reproduced(void)
 }
 
 /* Riccati's equation of Table 1 solved by the prototypes to 9 digits. */
-static void covariance_of_the_kf_comes_to_rest(void)
+TEST(covariance_of_the_kf_comes_to_rest)
 {
     robust_reference_t f;
     robust_reference_table1(&f, "kf");
@@ -96,7 +92,7 @@ static void covariance_of_the_kf_comes_to_rest(void)
 }
 
 /* Error variances by Lyapunov's equation: outliers make the noise 0.85 + 0.15 x 400 = 60.85 times as large. */
-static void lrf_gains_twofold_with_outliers_and_loses_sixfold_without(void)
+TEST(lrf_gains_twofold_with_outliers_and_loses_sixfold_without)
 {
     robust_reference_t kf;
     robust_reference_t lrf;
@@ -131,7 +127,7 @@ static double difference_after(robust_reference_t *a, robust_reference_t *b, int
 }
 
 /* A reading that made no difference would be no reading. */
-static void every_printed_reading_differs_from_the_corrected_one(void)
+TEST(every_printed_reading_differs_from_the_corrected_one)
 {
     static const char *const kinds[ROBUST_READING_COUNT] = {
         [ROBUST_PRINTED_15] = "af_grid", [ROBUST_PRINTED_GRID] = "af_grid", [ROBUST_PRINTED_21] = "pbf",
@@ -151,7 +147,7 @@ static void every_printed_reading_differs_from_the_corrected_one(void)
 }
 
 /* The clairvoyant without outliers, the soft gate at infinity and outliers like all other samples: the KF. */
-static void limits_of_the_filters_are_the_kf(void)
+TEST(limits_of_the_filters_are_the_kf)
 {
     robust_reference_t kf;
     robust_reference_t other;
@@ -168,7 +164,7 @@ static void limits_of_the_filters_are_the_kf(void)
     TEST_ASSERT_TRUE(difference_after(&kf, &other, 60) < 1e-6);
 }
 
-static void median_start_is_the_median_of_five(void)
+TEST(median_start_is_the_median_of_five)
 {
     static const double z[] = { 3.0, 9.0, -5.0, 3.2, 3.1 };
     static const double medians[] = { 3.0, 6.0, 3.0, 3.1, 3.1 };
@@ -189,7 +185,7 @@ static void assert_refused(const char *name, const robust_reference_t *f)
     TEST_ASSERT_EQUAL_STRING(name, refused);
 }
 
-static void parameters_outside_their_range_are_named(void)
+TEST(parameters_outside_their_range_are_named)
 {
     robust_reference_t good;
     robust_reference_table1(&good, "pbf");
@@ -214,17 +210,4 @@ static void parameters_outside_their_range_are_named(void)
     f = good;
     f.median_window = 4;
     assert_refused("median", &f);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(golden_rows_are_reproduced);
-    RUN_TEST(covariance_of_the_kf_comes_to_rest);
-    RUN_TEST(lrf_gains_twofold_with_outliers_and_loses_sixfold_without);
-    RUN_TEST(every_printed_reading_differs_from_the_corrected_one);
-    RUN_TEST(limits_of_the_filters_are_the_kf);
-    RUN_TEST(median_start_is_the_median_of_five);
-    RUN_TEST(parameters_outside_their_range_are_named);
-    return UNITY_END();
 }

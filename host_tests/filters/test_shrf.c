@@ -1,10 +1,6 @@
 /* shrf in integers, on the PC and on the chip: outliers unused, no lock-out. Against double: test_wide_reference.c. */
 #include "support/laws.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test.h"
 
 /* 100 Hz, settled at 0. */
 static filter_t settled(int32_t r_lsb2_q8)
@@ -18,7 +14,7 @@ static filter_t settled(int32_t r_lsb2_q8)
 }
 
 /* Unlike pbf: not by a 400th, not at all; P is the prediction's. */
-static void clear_outlier_is_not_used_at_all(void)
+TEST(clear_outlier_is_not_used_at_all)
 {
     filter_t f = settled(16U * 256U);
     filter_t predicted = f;
@@ -32,7 +28,7 @@ static void clear_outlier_is_not_used_at_all(void)
 }
 
 /* m = p / S: at 4.2 sigma it counts a little, and P grows by p (1 - p) r^2, which pbf has times b^2. */
-static void doubtful_sample_counts_a_little_and_lets_p_grow(void)
+TEST(doubtful_sample_counts_a_little_and_lets_p_grow)
 {
     filter_t f = settled(16U * 256U);
     filter_t predicted = f;
@@ -44,7 +40,7 @@ static void doubtful_sample_counts_a_little_and_lets_p_grow(void)
 }
 
 /* 1..100 sigma, within 1,200 samples, the limit. */
-static void every_step_is_followed(void)
+TEST(every_step_is_followed)
 {
     static const int16_t steps_lsb[] = { 4, 8, 20, 40, 80, 200, 400 };
     for (uint8_t i = 0; i < 7; i++) {
@@ -57,7 +53,7 @@ static void every_step_is_followed(void)
 }
 
 /* 4000 LSB at R = 0.0117: 37,000 sigma. P comes to the end of its range, and the filter restarts. */
-static void step_beyond_the_range_of_p_restarts_it(void)
+TEST(step_beyond_the_range_of_p_restarts_it)
 {
     filter_t f = settled(FILTER_R_MIN_LSB2_Q8);
     uint16_t k = 0;
@@ -67,14 +63,4 @@ static void step_beyond_the_range_of_p_restarts_it(void)
     }
     TEST_ASSERT_TRUE(k > 3U && k < 400U);
     TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, f.flags);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(clear_outlier_is_not_used_at_all);
-    RUN_TEST(doubtful_sample_counts_a_little_and_lets_p_grow);
-    RUN_TEST(every_step_is_followed);
-    RUN_TEST(step_beyond_the_range_of_p_restarts_it);
-    return UNITY_END();
 }

@@ -1,7 +1,7 @@
 /* soft against Eigen and the normal law: steps, weights, recovery. */
 #include "reference/filters.h"
 #include "support/laws.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,10 +11,6 @@
 #define SEED 4721
 #define GOLDEN "../shared/reference/golden_mls.csv"
 #define R_LSB2 16U
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* 100 Hz, R 16 LSB^2: sigma 4, agreement within floor(3 sqrt(32) + 8) = 24 LSB, rate at most 8 LSB per sample. */
 static filter_config_t config_100hz(void)
@@ -27,7 +23,7 @@ static filter_config_t config_100hz(void)
 /*
  * Columns k, y, true, outlier, then four per filter; soft+ is the ninth. aux: 0 near, 1 beyond the gate, 2 restarted.
  */
-static void reference_follows_the_golden_rows(void)
+TEST(reference_follows_the_golden_rows)
 {
     FILE *file = fopen(GOLDEN, "r");
     if (file == NULL) {
@@ -121,7 +117,7 @@ static void assert_step_equals_the_reference(const filter_t *start, int16_t z)
 }
 
 /* Any configuration, after any samples and gaps: P small and at its limit. */
-static void steps_beyond_the_soft_gate_equal_the_reference(void)
+TEST(steps_beyond_the_soft_gate_equal_the_reference)
 {
     uint32_t random = SEED;
     int compared = 0;
@@ -151,7 +147,7 @@ static void steps_beyond_the_soft_gate_equal_the_reference(void)
 }
 
 /* 15 % outliers of 20 sigma on a slow motion, no re-acquisition: the errors of both against the truth, within 2 %. */
-static void errors_equal_those_of_the_reference(void)
+TEST(errors_equal_those_of_the_reference)
 {
     filter_config_t config = config_100hz();
     config.value[SOFT_GATE_SIGMA_Q8] = 0;
@@ -198,7 +194,7 @@ static int samples_to_recover(test_random_t *random, const filter_config_t *conf
     return 2000;
 }
 
-static void every_step_is_reacquired_within_200_samples(void)
+TEST(every_step_is_reacquired_within_200_samples)
 {
     static const double outliers[] = { 0.0, 0.05, 0.15 };
     static const double steps_sigma[] = { 1, 2, 3, 4, 5, 7, 10, 20, 50, 100 };
@@ -215,7 +211,7 @@ static void every_step_is_reacquired_within_200_samples(void)
 }
 
 /* Flagged on clean noise: 2 (1 - Phi(3)) = 0.27 %, binomial 5 sigma of 60,000; S is a little too large, so fewer. */
-static void false_alarms_are_those_of_the_normal_law(void)
+TEST(false_alarms_are_those_of_the_normal_law)
 {
     filter_config_t config = config_100hz();
     filter_t f;
@@ -235,7 +231,7 @@ static void false_alarms_are_those_of_the_normal_law(void)
  * Alone, without re-acquisition, the soft gate follows a step of 2.5 to 10 sigma as its double does, in the same number
  * of samples within 2 %. (Of further ones it is slower: P stops at its limit, test_soft.c.)
  */
-static void without_reacquisition_it_returns_as_the_reference(void)
+TEST(without_reacquisition_it_returns_as_the_reference)
 {
     static const int steps_lsb[] = { 10, 20, 30, 40 };
     filter_config_t config = config_100hz();
@@ -263,16 +259,4 @@ static void without_reacquisition_it_returns_as_the_reference(void)
         TEST_ASSERT_GREATER_THAN_INT(0, exact);
         TEST_ASSERT_INT_WITHIN(1U + (unsigned)exact / 50U, exact, fixed);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(reference_follows_the_golden_rows);
-    RUN_TEST(steps_beyond_the_soft_gate_equal_the_reference);
-    RUN_TEST(errors_equal_those_of_the_reference);
-    RUN_TEST(every_step_is_reacquired_within_200_samples);
-    RUN_TEST(false_alarms_are_those_of_the_normal_law);
-    RUN_TEST(without_reacquisition_it_returns_as_the_reference);
-    return UNITY_END();
 }

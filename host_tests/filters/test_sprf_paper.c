@@ -1,11 +1,7 @@
 /* sprf_paper in integers, on the PC and on the chip: gate, no robust start, lock-out. Against double:
  * test_wide_reference.c. */
 #include "support/laws.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test.h"
 
 /* 100 Hz, R 16 LSB^2: sigma 4 LSB. */
 static filter_t settled(int16_t level)
@@ -20,7 +16,7 @@ static filter_t settled(int16_t level)
     return f;
 }
 
-static void gate_is_two_sigma_by_default_and_never_off(void)
+TEST(gate_is_two_sigma_by_default_and_never_off)
 {
     filter_t f;
     filter_config_t config = filter_defaults(&filter_law_sprf_paper, 1000);
@@ -31,7 +27,7 @@ static void gate_is_two_sigma_by_default_and_never_off(void)
 }
 
 /* The limit that the probe tells, gate^2 R S; the integers on either side of it decide differently. */
-static void samples_within_the_limit_are_taken(void)
+TEST(samples_within_the_limit_are_taken)
 {
     filter_t f = settled(0);
     filter_probe_t probe;
@@ -49,7 +45,7 @@ static void samples_within_the_limit_are_taken(void)
     TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, outside.flags);
 }
 
-static void refused_sample_leaves_the_prediction(void)
+TEST(refused_sample_leaves_the_prediction)
 {
     filter_t f = settled(100);
     TEST_ASSERT_EQUAL_INT32((int32_t)100 * 65536, filter_update(&f, 2000));
@@ -59,7 +55,7 @@ static void refused_sample_leaves_the_prediction(void)
 }
 
 /* The first sample is the estimate, P11 = R: an outlier of 20 sigma there makes outliers of all that follow. */
-static void an_outlier_at_the_start_locks_out(void)
+TEST(an_outlier_at_the_start_locks_out)
 {
     filter_t f;
     filter_config_t config = filter_defaults(&filter_law_sprf_paper, 1000);
@@ -81,7 +77,7 @@ static void an_outlier_at_the_start_locks_out(void)
  * After a step of 80 LSB, 20 sigma, the gate opens with the first S = P11 + 1 of 20^2 / 2^2 = 100 and more: not before,
  * and not later; no run of equal samples opens it.
  */
-static void gate_opens_only_when_p_has_grown_to_the_step(void)
+TEST(gate_opens_only_when_p_has_grown_to_the_step)
 {
     filter_t f = settled(0);
     uint16_t k = 0;
@@ -97,7 +93,7 @@ static void gate_opens_only_when_p_has_grown_to_the_step(void)
 }
 
 /* A step that P cannot grow to, 4000 LSB at sigma 0.1: refused to the end of P's range, then taken. */
-static void end_of_the_range_ends_the_lock_out(void)
+TEST(end_of_the_range_ends_the_lock_out)
 {
     filter_t f;
     filter_config_t config = filter_defaults(&filter_law_sprf_paper, 1000);
@@ -111,16 +107,4 @@ static void end_of_the_range_ends_the_lock_out(void)
     }
     TEST_ASSERT_TRUE(k > 3U && k < 400U);
     TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, f.flags);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(gate_is_two_sigma_by_default_and_never_off);
-    RUN_TEST(samples_within_the_limit_are_taken);
-    RUN_TEST(refused_sample_leaves_the_prediction);
-    RUN_TEST(an_outlier_at_the_start_locks_out);
-    RUN_TEST(gate_opens_only_when_p_has_grown_to_the_step);
-    RUN_TEST(end_of_the_range_ends_the_lock_out);
-    return UNITY_END();
 }

@@ -2,8 +2,8 @@
 #include "reference/filters.h"
 #include "support/filters.h"
 #include "support/own_model.h"
+#include "support/test.h"
 #include "tracker.h"
-#include "unity.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,10 +13,6 @@
 #define SEED 4711
 #define GOLDEN "../shared/reference/golden_mls.csv"
 #define R_LSB2 16U
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* 100 Hz, R 16 LSB^2: sigma 4, agreement within floor(3 sqrt(32) + 8) = 24 LSB, rate at most 8 LSB per sample. */
 static filter_config_t config_100hz(void)
@@ -41,7 +37,7 @@ static filter_t settled(const filter_config_t *config, int16_t level)
  * Columns k, y, true, outlier, then four per filter; SpRF+ is the eighth filter. aux: 0 accepted, 1 refused, 2
  * restarted.
  */
-static void reference_follows_the_golden_rows(void)
+TEST(reference_follows_the_golden_rows)
 {
     FILE *file = fopen(GOLDEN, "r");
     if (file == NULL) {
@@ -78,7 +74,7 @@ static void reference_follows_the_golden_rows(void)
 }
 
 /* The limit gate sqrt(R S) with S from the matrix reference: the integers on either side of it decide differently. */
-static void gate_is_at_gate_sigmas_of_the_innovation(void)
+TEST(gate_is_at_gate_sigmas_of_the_innovation)
 {
     static const uint16_t gates_q8[] = { 256, 512, 768, 1536, 4096 };
     static const int32_t r_lsb2[] = { 16, 400, 1000 };
@@ -126,7 +122,7 @@ static int samples_to_recover(test_random_t *random, double step_lsb, double out
     return 1000;
 }
 
-static void every_step_is_reacquired_within_200_samples(void)
+TEST(every_step_is_reacquired_within_200_samples)
 {
     static const double outliers[] = { 0.0, 0.05, 0.15 };
     static const double steps_sigma[] = { 1, 2, 3, 4, 5, 7, 10, 20, 50, 100 };
@@ -142,7 +138,7 @@ static void every_step_is_reacquired_within_200_samples(void)
 }
 
 /* Refused samples on clean noise: 2 (1 - Phi(3)) = 0.27 %, binomial 5 sigma of 60,000. */
-static void false_alarms_are_those_of_the_normal_law(void)
+TEST(false_alarms_are_those_of_the_normal_law)
 {
     filter_config_t config = config_100hz();
     filter_t f;
@@ -163,7 +159,7 @@ static void false_alarms_are_those_of_the_normal_law(void)
  * Its own model is kf's. The squares within 3 sigmas have the mean 0.973. Of 0.27 % beyond them each costs at 12.5 Hz
  * about two more, because the motion turns in every sample there.
  */
-static void few_samples_of_its_own_model_are_refused(void)
+TEST(few_samples_of_its_own_model_are_refused)
 {
     static const uint16_t rates_dhz[] = { 125, 250, 500, 1000, 2000, 4000, 8000 };
     for (int i = 0; i < 7; i++) {
@@ -202,7 +198,7 @@ static void behind_a_turn_it_runs_on_by_eight_degrees_at_most(const filter_law_t
     TEST_ASSERT_TRUE(beyond_deg <= 8.0);
 }
 
-static void turns_end_in_time(void)
+TEST(turns_end_in_time)
 {
     int laws = 0;
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
@@ -215,16 +211,4 @@ static void turns_end_in_time(void)
         }
     }
     TEST_ASSERT_EQUAL_INT(2, laws);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(reference_follows_the_golden_rows);
-    RUN_TEST(gate_is_at_gate_sigmas_of_the_innovation);
-    RUN_TEST(every_step_is_reacquired_within_200_samples);
-    RUN_TEST(false_alarms_are_those_of_the_normal_law);
-    RUN_TEST(few_samples_of_its_own_model_are_refused);
-    RUN_TEST(turns_end_in_time);
-    return UNITY_END();
 }

@@ -1,18 +1,14 @@
 /* synth_opt against its double reference, and the reference against the values and limits of the notes. */
 #include "reference/synth_opt.h"
 #include "support/laws.h"
+#include "support/test.h"
 #include "synth.h"
-#include "unity.h"
 
 #include <math.h>
 
 #define PI 3.14159265358979323846
 #define STRETCH 0.9413
 enum { SEED = 7101, STEPS = 12 };
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static void equal_errors(double s[9], double p0)
 {
@@ -22,7 +18,7 @@ static void equal_errors(double s[9], double p0)
 }
 
 /* notes/synthesised-filter.md 1.1 and 2.1, to the digits printed there: P0 = 5, R = 1 and 0.5; three raw samples. */
-static void exact_schedule_begins_as_in_the_notes(void)
+TEST(exact_schedule_begins_as_in_the_notes)
 {
     static const double p0[3] = { 5.0, 10.0, 0.0 };
     static const double b0[3][6] = { { 0.83333, 0.83333, 0.78313, 0.72532, 0.69948, 0.68625 },
@@ -42,7 +38,7 @@ static void exact_schedule_begins_as_in_the_notes(void)
     }
 }
 
-static void u_schedule_begins_as_in_the_notes(void)
+TEST(u_schedule_begins_as_in_the_notes)
 {
     static const double expected[4][3] = { { -1.0 / 6, 32.5, 0.970149 },
                                            { -0.032338, 9.680014, 0.906367 },
@@ -61,7 +57,7 @@ static void u_schedule_begins_as_in_the_notes(void)
 }
 
 /* From 1000 positive-definite starts over six decades: a1 = 0, b0 = 2/3, P = 2/3 R. */
-static void exact_schedule_has_one_limit(void)
+TEST(exact_schedule_has_one_limit)
 {
     test_random_t random;
     random_seed(&random, SEED);
@@ -89,7 +85,7 @@ static void exact_schedule_has_one_limit(void)
 }
 
 /* U: a1 = -1/6, b0 = P / R = 11/13 from flat starts over ten decades, and from 0, which the clamp of b0 leaves. */
-static void u_schedule_has_its_limit(void)
+TEST(u_schedule_has_its_limit)
 {
     for (int decade = -6; decade <= 4; decade++) {
         double p0 = decade == -6 ? 0.0 : pow(10.0, decade);
@@ -141,7 +137,7 @@ static void assert_step(filter_t *f, const reference_gains_t *expected)
     TEST_ASSERT_DOUBLE_WITHIN(0.6, fmin(expected->b0 * 65536.0, 65535.0), probe.gain_uq16);
 }
 
-static void table_is_the_schedule_of_the_reference(void)
+TEST(table_is_the_schedule_of_the_reference)
 {
     for (int u = 0; u <= 1; u++) {
         for (int i = 0; i < 6; i++) {
@@ -163,7 +159,7 @@ static void table_is_the_schedule_of_the_reference(void)
  * The variance that the filter's own gains leave, over what the schedule made for the very P0 / R leaves: at most
  * 1.15 in any sample and 1.023 in the mean of the 16 of the start, for P0 / R from 1/2 to 100,000.
  */
-static void nearest_class_costs_little(void)
+TEST(nearest_class_costs_little)
 {
     double worst = 1.0;
     double worst_mean = 1.0;
@@ -207,7 +203,7 @@ static double switching_bound(void)
     return reference_norm_loss() / (1.0 - STRETCH);
 }
 
-static void clamps_are_safe_for_any_switching(void)
+TEST(clamps_are_safe_for_any_switching)
 {
     TEST_ASSERT_TRUE(reference_stretch(0.0, 0.5) > 0.5);
     for (int i = 0; i <= 20; i++) {
@@ -238,7 +234,7 @@ static double uniform(test_random_t *random)
  * 10^5 steps of random gains within the clamps, every other one at a corner, held for 1 to 8 steps; a disturbance of
  * +-1, its sign random or that of the error.
  */
-static void random_switching_stays_below_the_bound(void)
+TEST(random_switching_stays_below_the_bound)
 {
     static const double corners[3][2] = { { 0.0, 1.0 }, { 0.0, 0.5 }, { -1.0 / 3.0, 0.5 } };
     test_random_t random;
@@ -267,7 +263,7 @@ static void random_switching_stays_below_the_bound(void)
  * The library's step with gains at random: samples of +-150 LSB and nothing but rounding between it and the double
  * filter: |difference| < 25 x 1.5 x 2^-17 LSB at every one of 10^5 steps, and the estimate below 25 x 150 LSB.
  */
-static void fixed_point_switches_as_the_reference(void)
+TEST(fixed_point_switches_as_the_reference)
 {
     test_random_t random;
     random_seed(&random, SEED + 2);
@@ -290,7 +286,7 @@ static void fixed_point_switches_as_the_reference(void)
 /* --- the whole filter --- */
 
 /* |x - reference| below 25 x 1.5 roundings of 2^-17 LSB, from the start on: the start's median is exact. */
-static void estimate_equals_the_reference(void)
+TEST(estimate_equals_the_reference)
 {
     test_random_t random;
     random_seed(&random, SEED + 3);
@@ -326,7 +322,7 @@ static double profile(int which, double t)
 }
 
 /* Row (0, 2/3) of that section, exact there, from a constant start: 0..5, 6..10, 11..15 s; 4000 runs, R = 0.6. */
-static void roll_experiment_has_the_errors_of_the_notes(void)
+TEST(roll_experiment_has_the_errors_of_the_notes)
 {
     static const double expected[3][3] = { { 0.4026, 0.4023, 0.4000 },
                                            { 0.4026, 0.4041, 0.4000 },
@@ -360,7 +356,7 @@ static void roll_experiment_has_the_errors_of_the_notes(void)
 }
 
 /* Variance that the probe tells in the limit against that of 200,000 samples: 2/3 R and, of U, 0.8059 R. */
-static void probe_reports_the_true_variance(void)
+TEST(probe_reports_the_true_variance)
 {
     test_random_t random;
     random_seed(&random, SEED + 5);
@@ -378,22 +374,4 @@ static void probe_reports_the_true_variance(void)
         filter_probe(&f, &probe);
         TEST_ASSERT_DOUBLE_WITHIN(0.02 * squares, squares, probe.p_lsb2_q8 / 256.0);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(exact_schedule_begins_as_in_the_notes);
-    RUN_TEST(u_schedule_begins_as_in_the_notes);
-    RUN_TEST(exact_schedule_has_one_limit);
-    RUN_TEST(u_schedule_has_its_limit);
-    RUN_TEST(table_is_the_schedule_of_the_reference);
-    RUN_TEST(nearest_class_costs_little);
-    RUN_TEST(clamps_are_safe_for_any_switching);
-    RUN_TEST(random_switching_stays_below_the_bound);
-    RUN_TEST(fixed_point_switches_as_the_reference);
-    RUN_TEST(estimate_equals_the_reference);
-    RUN_TEST(roll_experiment_has_the_errors_of_the_notes);
-    RUN_TEST(probe_reports_the_true_variance);
-    return UNITY_END();
 }

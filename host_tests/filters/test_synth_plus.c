@@ -1,10 +1,6 @@
 /* synth_plus: its taps, its region and its start on integers; runs on the PC and on the chip. */
 #include "support/laws.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test.h"
 
 static filter_config_t with(uint16_t k, uint16_t b0_uq16, int32_t b1_q16, int32_t b2_q16)
 {
@@ -33,7 +29,7 @@ static void make(filter_t *f, uint16_t k, uint16_t b0_uq16, int32_t b1_q16, int3
  * and a missing sample: -30 - 360 + 3/4 (-15 - 720 + 576) - 7.5 - 90 = -606.75, then u is 0 in its place
  *   -1213.5 + 15 + 3/4 (-606.75 + 30 + 360) + 3.75 = -1357.3125
  */
-static void answers_are_those_of_the_equation(void)
+TEST(answers_are_those_of_the_equation)
 {
     static const int32_t expected_lsb_q4[] = { 512 * 16, 576 * 16, 360 * 16, -15 * 16, -9708, -21717 };
     filter_t f;
@@ -52,7 +48,7 @@ static void answers_are_those_of_the_equation(void)
 /*
  * rho = 1 goes on with the second difference of 10: 0, 10, 30 give 60. With rho = 1 - 2^-7 less 10 / 128 = 5120/65536.
  */
-static void rho_is_a_shift(void)
+TEST(rho_is_a_shift)
 {
     static const struct {
         uint16_t k;
@@ -77,7 +73,7 @@ static void rho_is_a_shift(void)
  * b2 < 1/4. What is beyond 16 bits decides with rho = 1 - 2^-7 and b1 = 1 count: b2 < 255.504 counts, and with b0 =
  * 1 - 2^-16 and rho = 1: b2 < 65533.00003 counts.
  */
-static void border_of_the_region_is_outside(void)
+TEST(border_of_the_region_is_outside)
 {
     static const struct {
         uint16_t k, b0_uq16;
@@ -103,7 +99,7 @@ static void border_of_the_region_is_outside(void)
 }
 
 /* After a reset there is no innovation to remember, whatever came before. */
-static void reset_forgets_the_innovations(void)
+TEST(reset_forgets_the_innovations)
 {
     filter_t f;
     make(&f, 2, 32768, -16384, 8192);
@@ -117,7 +113,7 @@ static void reset_forgets_the_innovations(void)
 }
 
 /* With b1 = b2 = 0 it is synth with that a1, bit for bit. */
-static void without_memory_it_is_synth(void)
+TEST(without_memory_it_is_synth)
 {
     filter_t f;
     filter_t plain;
@@ -139,7 +135,7 @@ static void without_memory_it_is_synth(void)
  * median, so (3 - k) s off: its end lags by the sum of (6 k - 2 n - 2) (3 - k) s / (n (n + 1)) = 60 s / (n (n + 1)).
  * What is left where the own gains take over dies away with the poles: nothing of it at sample 150.
  */
-static void start_on_a_ramp_finds_its_slope(void)
+TEST(start_on_a_ramp_finds_its_slope)
 {
     filter_t f;
     filter_config_t config = filter_defaults(&filter_law_synth_plus, 1000);
@@ -155,7 +151,7 @@ static void start_on_a_ramp_finds_its_slope(void)
 }
 
 /* The gains of the start are those of the line, the own from where they are larger, or from sample 32 on. */
-static void start_ends_with_sample_31(void)
+TEST(start_ends_with_sample_31)
 {
     filter_config_t config = with(0, 2000, -1900, 0);
     filter_t f;
@@ -177,7 +173,7 @@ static void start_ends_with_sample_31(void)
 }
 
 /* An outlier among the first five changes nothing: the start is their median. */
-static void outlier_in_the_start_costs_nothing(void)
+TEST(outlier_in_the_start_costs_nothing)
 {
     filter_t f;
     filter_config_t config = filter_defaults(&filter_law_synth_plus, 1000);
@@ -190,7 +186,7 @@ static void outlier_in_the_start_costs_nothing(void)
 }
 
 /* R = 3 LSB^2: alpha-beta of 1/2 and 1/4 has (1/2 + 1/8) / (1/2 x 2.75) = 5/11. A sample's in the start. */
-static void probe_reports_the_variance(void)
+TEST(probe_reports_the_variance)
 {
     filter_probe_t probe;
     filter_t f;
@@ -208,7 +204,7 @@ static void probe_reports_the_variance(void)
 }
 
 /* What leaves the format is cut off and flagged, whatever the taps. */
-static void overshoot_beyond_the_format_is_flagged(void)
+TEST(overshoot_beyond_the_format_is_flagged)
 {
     filter_t f;
     uint8_t flags = 0;
@@ -220,20 +216,4 @@ static void overshoot_beyond_the_format_is_flagged(void)
         flags |= f.flags;
     }
     TEST_ASSERT_EQUAL_UINT8(FILTER_SATURATED, flags);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(answers_are_those_of_the_equation);
-    RUN_TEST(rho_is_a_shift);
-    RUN_TEST(border_of_the_region_is_outside);
-    RUN_TEST(reset_forgets_the_innovations);
-    RUN_TEST(without_memory_it_is_synth);
-    RUN_TEST(start_on_a_ramp_finds_its_slope);
-    RUN_TEST(start_ends_with_sample_31);
-    RUN_TEST(outlier_in_the_start_costs_nothing);
-    RUN_TEST(probe_reports_the_variance);
-    RUN_TEST(overshoot_beyond_the_format_is_flagged);
-    return UNITY_END();
 }

@@ -1,17 +1,13 @@
 /* synth against its double reference, and the reference against the closed forms and tables of the notes. */
 #include "reference/synth.h"
 #include "support/laws.h"
+#include "support/test.h"
 #include "synth.h"
-#include "unity.h"
 
 #include <math.h>
 
 #define SEED 7001
 #define PI 3.14159265358979323846
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* notes/synthesised-filter.md, table of section 1: exact closed forms, computed there by another program. */
 static const struct {
@@ -34,7 +30,7 @@ static double closed_noise_gain(double a1, double b0)
     return (2.0 - b0 - 2.0 * ac * b0 - 2.0 * ac * ac) / ((1.0 + 2.0 * ac) * (4.0 - 3.0 * b0 - 4.0 * ac));
 }
 
-static void reference_has_the_closed_forms(void)
+TEST(reference_has_the_closed_forms)
 {
     for (int i = 0; i < ROWS; i++) {
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, closed_noise_gain(table[i].a1, table[i].b0),
@@ -66,7 +62,7 @@ static double a1_of(const filter_t *f)
 }
 
 /* Steps of 2000 LSB: response of the chip's integers, peak height to 1e-4 of the step and its sample. */
-static void step_peaks_where_the_notes_say(void)
+TEST(step_peaks_where_the_notes_say)
 {
     for (int i = 0; i < ROWS; i++) {
         filter_t f;
@@ -87,7 +83,7 @@ static void step_peaks_where_the_notes_say(void)
 }
 
 /* Grid over the whole format: taken exactly when all poles lie inside the unit circle, to the eigenvalues' 1e-7. */
-static void region_is_exactly_the_stable_one(void)
+TEST(region_is_exactly_the_stable_one)
 {
     int taken = 0;
     int refused = 0;
@@ -111,7 +107,7 @@ static void region_is_exactly_the_stable_one(void)
 }
 
 /* Relative error as synth.h says. */
-static void noise_gain_is_that_of_the_reference(void)
+TEST(noise_gain_is_that_of_the_reference)
 {
     for (int32_t a1 = -65535; a1 <= 65535; a1 += 2621) {
         for (int32_t b0 = 656; b0 <= 65535; b0 += 2183) {
@@ -127,7 +123,7 @@ static void noise_gain_is_that_of_the_reference(void)
 }
 
 /* With a1 <= 0 no gain brings the variance below R / 2: 0.5 is reached only as b0 -> 0 (finding of the notes). */
-static void variance_has_a_floor_of_half_r(void)
+TEST(variance_has_a_floor_of_half_r)
 {
     double least = 1.0;
     for (int i = -99; i <= 0; i++) {
@@ -148,7 +144,7 @@ static void variance_has_a_floor_of_half_r(void)
  * start are off by 2^-17 of innovations that are below 60 LSB and sum to less than 400 LSB here: 0.003 LSB, times the
  * largest |g| <= 3 of these filters.
  */
-static void estimate_equals_the_reference(void)
+TEST(estimate_equals_the_reference)
 {
     test_random_t random;
     random_seed(&random, SEED);
@@ -265,14 +261,14 @@ static void assert_experiment(const experiment_t *e, bool fixed)
     }
 }
 
-static void errors_of_fixed_point_are_the_exact_ones(void)
+TEST(errors_of_fixed_point_are_the_exact_ones)
 {
     for (size_t i = 0; i < sizeof constant_start / sizeof constant_start[0]; i++) {
         assert_experiment(&constant_start[i], true);
     }
 }
 
-static void reference_start_has_the_errors_of_the_notes(void)
+TEST(reference_start_has_the_errors_of_the_notes)
 {
     for (size_t i = 0; i < sizeof line_start / sizeof line_start[0]; i++) {
         assert_experiment(&line_start[i], false);
@@ -284,7 +280,7 @@ static void reference_start_has_the_errors_of_the_notes(void)
  * 0.2868 R (order statistics of five normals), and in the mean over 6..20 it must not be worse than the start of notes
  * 2.2.
  */
-static void median_start_is_no_worse_than_the_notes_start_at_rest(void)
+TEST(median_start_is_no_worse_than_the_notes_start_at_rest)
 {
     test_random_t random;
     random_seed(&random, SEED + 2);
@@ -313,7 +309,7 @@ static void median_start_is_no_worse_than_the_notes_start_at_rest(void)
  * Steady error under a constant second difference d: (1 - b0) (1 + a1) / b0 x d, 6.3 d at the paper's point. Triangular
  * numbers have d = 1; from sample 220 on the poles (0.958) have forgotten the start to 1e-4 of its 128 LSB a sample.
  */
-static void lag_under_acceleration_is_the_closed_form(void)
+TEST(lag_under_acceleration_is_the_closed_form)
 {
     filter_t f;
     make(&f, -0.3, 0.1, 768);
@@ -367,7 +363,7 @@ static altitude_result_t altitude_experiment(double a1, double b0, double double
 }
 
 /* Paper 001's 0.37 m and 0.9 m are not its own parameters': exact are sqrt(0.822358 / 4) = 0.4534 m and 0.315 m. */
-static void altitude_of_paper_001_comes_out_otherwise(void)
+TEST(altitude_of_paper_001_comes_out_otherwise)
 {
     altitude_result_t printed = altitude_experiment(-0.3, 0.1, 1.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.05 * 0.4534, 0.4534, printed.sigma);
@@ -376,21 +372,4 @@ static void altitude_of_paper_001_comes_out_otherwise(void)
     altitude_result_t fitting = altitude_experiment(0.0, 0.1, 2.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.05 * 0.358, 0.358, fitting.sigma);
     TEST_ASSERT_DOUBLE_WITHIN(0.01 * 0.900 + 0.01, 0.900, fitting.lag);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(reference_has_the_closed_forms);
-    RUN_TEST(step_peaks_where_the_notes_say);
-    RUN_TEST(region_is_exactly_the_stable_one);
-    RUN_TEST(noise_gain_is_that_of_the_reference);
-    RUN_TEST(variance_has_a_floor_of_half_r);
-    RUN_TEST(estimate_equals_the_reference);
-    RUN_TEST(errors_of_fixed_point_are_the_exact_ones);
-    RUN_TEST(reference_start_has_the_errors_of_the_notes);
-    RUN_TEST(median_start_is_no_worse_than_the_notes_start_at_rest);
-    RUN_TEST(lag_under_acceleration_is_the_closed_form);
-    RUN_TEST(altitude_of_paper_001_comes_out_otherwise);
-    return UNITY_END();
 }

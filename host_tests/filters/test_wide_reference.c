@@ -4,7 +4,7 @@
 #include "support/laws.h"
 #include "support/random.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,10 +14,6 @@
 #define R_LSB2 16.0
 
 enum { RUNS = 400, SAMPLES = 300, SCORED_FROM = 150 };
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* A law on the wide core and its reference: of the same name, the published one without its `_paper`. */
 typedef struct {
@@ -31,7 +27,7 @@ typedef struct {
 static pair_t pairs[FILTER_KIND_COUNT];
 static int pair_count;
 
-static void find_pairs(void)
+TEST(find_pairs)
 {
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         const filter_law_t *law = filter_listed((filter_kind_t)kind);
@@ -79,7 +75,7 @@ static void make(const pair_t *pair, filter_t *f, robust_reference_t *r)
 }
 
 /* At rest, over rates and R: 0.5 % where the gain is 0.027 and more; 0.7 % at the end of q22's range, gain 0.022. */
-static void steady_gains_are_kalmans(void)
+TEST(steady_gains_are_kalmans)
 {
     static const uint16_t rates[] = { 125, 250, 500, 1000, 2000, 4000, 8000, 16000, 40000 };
     static const double r_lsb2[] = { 0.0117, 0.1, 1.0, 10.0, 100.0, 1000.0 };
@@ -108,7 +104,7 @@ static void steady_gains_are_kalmans(void)
 }
 
 /* q22 itself, from rate, q and R: five products of 16 significant bits. */
-static void process_noise_is_q_t3_over_r(void)
+TEST(process_noise_is_q_t3_over_r)
 {
     filter_t f;
     robust_reference_t r;
@@ -181,7 +177,7 @@ static agreement_t compare(const pair_t *pair, double stay, double outliers_stay
  * 2 %. sprf_paper decides by a threshold: one decision that falls differently can lock one of the two out, so only the
  * median run is judged.
  */
-static void runs_agree_with_double(void)
+TEST(runs_agree_with_double)
 {
     for (int i = 0; i < pair_count; i++) {
         agreement_t found = compare(&pairs[i], 0.0, 0.0);
@@ -194,7 +190,7 @@ static void runs_agree_with_double(void)
  * Equation (11): set to outliers in runs of mean length 5 a law agrees with double, and does better by a
  * twentieth.
  */
-static void a_chain_of_outliers_is_expected(void)
+TEST(a_chain_of_outliers_is_expected)
 {
     int laws = 0;
     for (int i = 0; i < pair_count; i++) {
@@ -215,7 +211,7 @@ static void a_chain_of_outliers_is_expected(void)
  * Equation (11) needs no sample: after an outlier the probability of a normal one goes back to clean, missing sample by
  * missing sample, as the chain of two states alone says.
  */
-static void the_chain_goes_on_over_missing_samples(void)
+TEST(the_chain_goes_on_over_missing_samples)
 {
     static const double stay = 0.8;
     int laws = 0;
@@ -243,7 +239,7 @@ static void the_chain_goes_on_over_missing_samples(void)
 }
 
 /* After a step of n sigma, without outliers: p, gain and P11 follow the double filter through the whole recovery. */
-static void recovery_agrees_with_double(void)
+TEST(recovery_agrees_with_double)
 {
     static const int16_t steps_lsb[] = { 12, 20, 40, 80, 400 };
     for (int i = 1; i < pair_count; i++) {
@@ -264,17 +260,4 @@ static void recovery_agrees_with_double(void)
             TEST_ASSERT_LESS_OR_EQUAL_INT(pairs[i].returns_within, lag);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(find_pairs);
-    RUN_TEST(process_noise_is_q_t3_over_r);
-    RUN_TEST(steady_gains_are_kalmans);
-    RUN_TEST(runs_agree_with_double);
-    RUN_TEST(a_chain_of_outliers_is_expected);
-    RUN_TEST(the_chain_goes_on_over_missing_samples);
-    RUN_TEST(recovery_agrees_with_double);
-    return UNITY_END();
 }

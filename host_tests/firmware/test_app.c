@@ -9,7 +9,7 @@
 #include "support/board.h"
 #include "support/documented_limits.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/test.h"
 
 void setUp(void)
 {
@@ -32,7 +32,7 @@ static void assert_every_latched_sample_has_its_row(size_t allowed_pending)
     }
 }
 
-static void test_banner_then_header_then_rows(void)
+TEST(test_banner_then_header_then_rows)
 {
     board_start_resting();
     board_run_ms(1000);
@@ -48,7 +48,7 @@ static void test_banner_then_header_then_rows(void)
     TEST_ASSERT_INT_WITHIN(6, 98, (int)board.row_count);
 }
 
-static void test_first_five_rows_warm_up(void)
+TEST(test_first_five_rows_warm_up)
 {
     board_start_resting();
     board_run_ms(300);
@@ -58,7 +58,7 @@ static void test_first_five_rows_warm_up(void)
 }
 
 /* (31, -53, 248) LSB: 117, -200, 969 mg; roll atan2(-200, 969) = -11.66, pitch atan2(-117, 989) = -6.74 degrees. */
-static void test_values_of_a_resting_board(void)
+TEST(test_values_of_a_resting_board)
 {
     stream_t still = board_constant_stream(200, 100.0, 31, -53, 248);
     board_start(&still, 0.0, 0);
@@ -73,7 +73,7 @@ static void test_values_of_a_resting_board(void)
     stream_free(&still);
 }
 
-static void test_clock_wrap_is_seamless(void)
+TEST(test_clock_wrap_is_seamless)
 {
     static stream_t noisy;
     noisy = board_noisy_stream(1000, 100.0, 1.5, 3u);
@@ -87,7 +87,7 @@ static void test_clock_wrap_is_seamless(void)
     stream_free(&noisy);
 }
 
-static void test_settings_show_and_set(void)
+TEST(test_settings_show_and_set)
 {
     static const struct {
         const char *typed, *answer;
@@ -116,7 +116,7 @@ static void test_settings_show_and_set(void)
     }
 }
 
-static void test_refusals_name_the_legal_values(void)
+TEST(test_refusals_name_the_legal_values)
 {
     static const struct {
         const char *typed, *answer;
@@ -147,7 +147,7 @@ static void test_refusals_name_the_legal_values(void)
     assert_every_latched_sample_has_its_row(1);
 }
 
-static void test_line_ends_and_blank_lines(void)
+TEST(test_line_ends_and_blank_lines)
 {
     board_start_resting();
     board_run_ms(200);
@@ -159,7 +159,7 @@ static void test_line_ends_and_blank_lines(void)
     TEST_ASSERT_EQUAL_STRING("# every 4", board.notes[before + 2]);
 }
 
-static void test_garbage_and_long_lines_are_refused_whole(void)
+TEST(test_garbage_and_long_lines_are_refused_whole)
 {
     board_start_resting();
     board_run_ms(200);
@@ -177,7 +177,7 @@ static void test_garbage_and_long_lines_are_refused_whole(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("lines refused 2", before));
 }
 
-static void test_flood_of_garbage_costs_no_row(void)
+TEST(test_flood_of_garbage_costs_no_row)
 {
     board_start_resting();
     board_run_ms(200);
@@ -189,7 +189,7 @@ static void test_flood_of_garbage_costs_no_row(void)
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
 }
 
-static void test_help_lists_every_command(void)
+TEST(test_help_lists_every_command)
 {
     static const char *const words[] = { "filter", "rate", "range", "every",  "baud",
                                          "mode",   "stop", "go",    "status", "help" };
@@ -204,7 +204,7 @@ static void test_help_lists_every_command(void)
 }
 
 /* 1152 rows a second is what 115200 baud would carry of 10-byte rows; of 67-byte rows 171. */
-static void test_every_follows_what_the_line_carries(void)
+TEST(test_every_follows_what_the_line_carries)
 {
     TEST_ASSERT_EQUAL_UINT16(1, settings_smallest_every(115200, 1000));
     TEST_ASSERT_EQUAL_UINT16(2, settings_smallest_every(115200, 2000));
@@ -224,7 +224,7 @@ static void test_every_follows_what_the_line_carries(void)
     TEST_ASSERT_EQUAL_STRING("# every 3: the least for this baud rate", board.notes[before + 1]);
 }
 
-static void test_800_hz_says_its_bus_speed(void)
+TEST(test_800_hz_says_its_bus_speed)
 {
     board_start_resting();
     board_run_ms(200);
@@ -234,7 +234,7 @@ static void test_800_hz_says_its_bus_speed(void)
     TEST_ASSERT_EQUAL_STRING("# rate 800 Hz, I2C at 400 kHz", board.notes[before]);
 }
 
-static void test_baud_change_loses_nothing(void)
+TEST(test_baud_change_loses_nothing)
 {
     board_start_resting();
     board_run_ms(200);
@@ -248,7 +248,7 @@ static void test_baud_change_loses_nothing(void)
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
 }
 
-static void test_every_thins_rows_and_keeps_flags(void)
+TEST(test_every_thins_rows_and_keeps_flags)
 {
     stream_t still = board_constant_stream(1000, 100.0, 0, 0, 256);
     still.rows[104].lsb[2] = 4095;
@@ -266,7 +266,7 @@ static void test_every_thins_rows_and_keeps_flags(void)
 }
 
 /* 9600 baud carries a short row in 40 ms; `every` forced, it fits, so fill the ring by hand: the line stands still. */
-static void test_rows_without_room_are_dropped_whole_and_told(void)
+TEST(test_rows_without_room_are_dropped_whole_and_told)
 {
     board_start_resting();
     board_run_ms(500);
@@ -293,7 +293,7 @@ static void test_rows_without_room_are_dropped_whole_and_told(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(told, before));
 }
 
-static void test_plot_mode_is_labels_only(void)
+TEST(test_plot_mode_is_labels_only)
 {
     board_start_resting();
     board_run_ms(200);
@@ -333,7 +333,7 @@ static void change_and_check(const char *command)
     TEST_ASSERT_EQUAL_size_t(5, warm);
 }
 
-static void test_changes_at_every_phase_lose_nothing(void)
+TEST(test_changes_at_every_phase_lose_nothing)
 {
     static const char *const commands[] = { "filter {plain}", "rate 200", "filter {robust}",
                                             "rate 100",       "range 4",  "range 16" };
@@ -354,7 +354,7 @@ static void test_changes_at_every_phase_lose_nothing(void)
 }
 
 /* A byte lost to a framing error or a full ring makes its line garbage: "every 1000" must not become "every 100". */
-static void test_a_line_with_a_lost_byte_is_refused(void)
+TEST(test_a_line_with_a_lost_byte_is_refused)
 {
     board_start_resting();
     board_run_ms(200);
@@ -367,7 +367,7 @@ static void test_a_line_with_a_lost_byte_is_refused(void)
 }
 
 /* The slowest line with the widest plot rows still answers and still obeys. */
-static void test_plot_mode_on_a_slow_line_answers(void)
+TEST(test_plot_mode_on_a_slow_line_answers)
 {
     stream_t wide = board_constant_stream(1000, 100.0, 190, -95, -141);
     board_start(&wide, 0.0, 0);
@@ -388,7 +388,7 @@ static void test_plot_mode_on_a_slow_line_answers(void)
     stream_free(&wide);
 }
 
-static void test_stop_is_not_undone_by_a_change_that_follows(void)
+TEST(test_stop_is_not_undone_by_a_change_that_follows)
 {
     board_start_resting();
     board_run_ms(500);
@@ -401,7 +401,7 @@ static void test_stop_is_not_undone_by_a_change_that_follows(void)
 }
 
 /* Readings alternate by +-6 LSB about 248: begun anew, a filter would put out the first of them, 23 mg off. */
-static void test_change_of_filter_goes_on_from_the_old_output(void)
+TEST(test_change_of_filter_goes_on_from_the_old_output)
 {
     stream_t alternating = board_constant_stream(1000, 100.0, 0, 0, 248);
     for (size_t i = 0; i < alternating.count; i++) {
@@ -418,31 +418,4 @@ static void test_change_of_filter_goes_on_from_the_old_output(void)
     }
     TEST_ASSERT_TRUE(board.row_count > before + 5);
     stream_free(&alternating);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_banner_then_header_then_rows);
-    RUN_TEST(test_first_five_rows_warm_up);
-    RUN_TEST(test_values_of_a_resting_board);
-    RUN_TEST(test_clock_wrap_is_seamless);
-    RUN_TEST(test_settings_show_and_set);
-    RUN_TEST(test_refusals_name_the_legal_values);
-    RUN_TEST(test_line_ends_and_blank_lines);
-    RUN_TEST(test_garbage_and_long_lines_are_refused_whole);
-    RUN_TEST(test_flood_of_garbage_costs_no_row);
-    RUN_TEST(test_help_lists_every_command);
-    RUN_TEST(test_every_follows_what_the_line_carries);
-    RUN_TEST(test_800_hz_says_its_bus_speed);
-    RUN_TEST(test_baud_change_loses_nothing);
-    RUN_TEST(test_every_thins_rows_and_keeps_flags);
-    RUN_TEST(test_rows_without_room_are_dropped_whole_and_told);
-    RUN_TEST(test_plot_mode_is_labels_only);
-    RUN_TEST(test_changes_at_every_phase_lose_nothing);
-    RUN_TEST(test_a_line_with_a_lost_byte_is_refused);
-    RUN_TEST(test_plot_mode_on_a_slow_line_answers);
-    RUN_TEST(test_stop_is_not_undone_by_a_change_that_follows);
-    RUN_TEST(test_change_of_filter_goes_on_from_the_old_output);
-    return UNITY_END();
 }

@@ -11,11 +11,9 @@
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support/board.h"
-#include "unity.h"
+#include "support/test.h"
 
 static stream_t stream;
-
-void setUp(void) {}
 
 /* Here, because a test that fails does not reach its end. */
 void tearDown(void)
@@ -24,7 +22,7 @@ void tearDown(void)
 }
 
 /* No sensor and wrong identity by turns, ten times: each is told once until samples come again, then anew. */
-static void test_alternating_faults_are_told_once_each(void)
+TEST(test_alternating_faults_are_told_once_each)
 {
     board_start_resting();
     board_run_ms(500);
@@ -47,7 +45,7 @@ static void test_alternating_faults_are_told_once_each(void)
     TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# fault 1: ", before));
 }
 
-static void test_counters_stay_at_their_greatest_value(void)
+TEST(test_counters_stay_at_their_greatest_value)
 {
     counters_start();
     count_lost(UINT32_MAX - 1u);
@@ -59,7 +57,7 @@ static void test_counters_stay_at_their_greatest_value(void)
 }
 
 /* Whole seconds since the start, over a stop and over the wrap of the microseconds. */
-static void test_uptime_counts_seconds(void)
+TEST(test_uptime_counts_seconds)
 {
     stream = board_constant_stream(1000, 100.0, 31, -53, 248);
     board_start(&stream, 0.0, 0xFFFFFFFFu - 2500000u);
@@ -80,7 +78,7 @@ static void test_uptime_counts_seconds(void)
  * z alternates between 242 and 254. A filter that goes on would put out about 248 (969 mg); a cold one puts out the
  * running median: the first sample itself, then the mean of two, and five rows are marked.
  */
-static void test_go_begins_cold(void)
+TEST(test_go_begins_cold)
 {
     stream = board_constant_stream(1000, 100.0, 0, 0, 248);
     for (size_t i = 0; i < stream.count; i++) {
@@ -108,7 +106,7 @@ static void test_go_begins_cold(void)
  * x is 600 LSB: no rail at 16 g (4095), beyond the one at 2 g (511). Samples latched before the change took effect are
  * those of the old range and must not be called clipped, whatever the phase at which the command comes.
  */
-static void test_old_samples_are_filtered_as_before_a_change_of_range(void)
+TEST(test_old_samples_are_filtered_as_before_a_change_of_range)
 {
     size_t old_on_the_way = 0;
     stream = board_constant_stream(1000, 100.0, 600, 0, 248);
@@ -137,7 +135,7 @@ static void test_old_samples_are_filtered_as_before_a_change_of_range(void)
 }
 
 /* One axis ahead of each of the next three samples, 10 ms apart, so that no row waits for all of them. */
-static void test_a_change_of_filter_goes_axis_by_axis(void)
+TEST(test_a_change_of_filter_goes_axis_by_axis)
 {
     board_start_resting();
     board_run_ms(500);
@@ -154,16 +152,4 @@ static void test_a_change_of_filter_goes_axis_by_axis(void)
         changed = now;
     }
     TEST_ASSERT_EQUAL_INT(3, changed);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_change_of_filter_goes_axis_by_axis);
-    RUN_TEST(test_alternating_faults_are_told_once_each);
-    RUN_TEST(test_counters_stay_at_their_greatest_value);
-    RUN_TEST(test_uptime_counts_seconds);
-    RUN_TEST(test_go_begins_cold);
-    RUN_TEST(test_old_samples_are_filtered_as_before_a_change_of_range);
-    return UNITY_END();
 }

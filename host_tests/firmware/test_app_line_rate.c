@@ -4,11 +4,9 @@
 #include "base/counters.h"
 #include "settings/settings.h"
 #include "support/board.h"
-#include "unity.h"
+#include "support/test.h"
 
 static stream_t wide;
-
-void setUp(void) {}
 
 /* Here, because a test that fails does not reach its end. */
 void tearDown(void)
@@ -30,7 +28,7 @@ static void run_until_notes(size_t count)
  * Typed ahead, before the line has drained and changed: they wait in the receive ring, are obeyed and answered
  * afterwards.
  */
-static void test_lines_behind_a_change_of_baud_are_obeyed(void)
+TEST(test_lines_behind_a_change_of_baud_are_obeyed)
 {
     board_start_resting();
     board_run_ms(200);
@@ -73,7 +71,7 @@ static void ask_all_the_time(size_t times)
  * The widest rows, as many as the line carries: 900 of 960 bytes a second, 3,600 of 3,840, 7,200 of 11,520. Replies
  * take what is left, and not a row is missing or late to the ring.
  */
-static void test_replies_never_push_a_row_out(void)
+TEST(test_replies_never_push_a_row_out)
 {
     static const struct {
         const char *rate, *baud;
@@ -98,12 +96,4 @@ static void test_replies_never_push_a_row_out(void)
             TEST_ASSERT_UINT32_WITHIN(2, lines[i].period_us, step_us);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_lines_behind_a_change_of_baud_are_obeyed);
-    RUN_TEST(test_replies_never_push_a_row_out);
-    return UNITY_END();
 }

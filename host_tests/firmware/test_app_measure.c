@@ -13,14 +13,12 @@
 #include "settings/settings.h"
 #include "support/documented_limits.h"
 #include "support/talk.h"
-#include "unity.h"
+#include "support/test.h"
 
 /* 256 samples at 400 Hz twice are 1.28 s; a change of configuration takes a period and 20 ms, three times. */
 enum { SELFTEST_MS = 1600, REST_X = 31, REST_Y = -53, REST_Z = 248, NEAR_LSB = 12 };
 
 static stream_t stream;
-
-void setUp(void) {}
 
 void tearDown(void)
 {
@@ -68,7 +66,7 @@ static void assert_sensor_is_as_set(void)
  * The typical part: 522, -522 and 698 LSB. Rows of a stream of 100 Hz are read four times at 400 Hz, so 64 readings of
  * 1.5 LSB rms make each mean: their difference is good to 0.27 LSB, 1.4 is five times that.
  */
-static void test_a_good_part_passes_at_any_rate_and_range(void)
+TEST(test_a_good_part_passes_at_any_rate_and_range)
 {
     static const char *const rates[] = { "rate 12.5", "rate 25",  "rate 50", "rate 100",
                                          "rate 200",  "rate 400", "rate 800" };
@@ -103,7 +101,7 @@ static void test_a_good_part_passes_at_any_rate_and_range(void)
 }
 
 /* Rows stop for so long, and no other time; then filters warm up as after `go`; none is called missing. */
-static void test_rows_pause_and_begin_anew(void)
+TEST(test_rows_pause_and_begin_anew)
 {
     talk_start_noisy(&stream, 100.0, 0.0);
     (void)talk_typed("selftest", 2500.0);
@@ -126,7 +124,7 @@ static void test_rows_pause_and_begin_anew(void)
  * The limits by definition, x and y 88.5 to 955.8 LSB, z 110.25 to 1286.25: the last whole LSB on each side of each.
  * Pairs that a mean has cut in two shift it by 3/256 LSB at most. y acts the other way.
  */
-static void test_the_limits(void)
+TEST(test_the_limits)
 {
     static const struct {
         int16_t shift_lsb[3];
@@ -155,7 +153,7 @@ static void test_the_limits(void)
 }
 
 /* Gain and offset of the part have no part in the shift. */
-static void test_offsets_do_not_count(void)
+TEST(test_offsets_do_not_count)
 {
     static const int16_t shift_lsb[] = { 300, -300, 400 };
     start_exact(shift_lsb);
@@ -171,7 +169,7 @@ static void test_offsets_do_not_count(void)
 }
 
 /* The board is turned by 20 LSB in x at this time of a test, in the plain half or in the other one. */
-static void test_a_board_that_moves_is_refused(void)
+TEST(test_a_board_that_moves_is_refused)
 {
     static const double at_ms[] = { 350.0, 1000.0 };
     for (size_t i = 0; i < 2; i++) {
@@ -192,7 +190,7 @@ static void test_a_board_that_moves_is_refused(void)
 }
 
 /* The supply fails for 30 ms at any stage: a result is one of good samples, and everything is as before afterwards. */
-static void test_a_supply_that_fails_in_the_middle(void)
+TEST(test_a_supply_that_fails_in_the_middle)
 {
     size_t cut = 0;
     for (double at_ms = 3.0; at_ms < 1600.0; at_ms += 17.0) {
@@ -213,7 +211,7 @@ static void test_a_supply_that_fails_in_the_middle(void)
 }
 
 /* Off the bus for good: told within half a second, and no hang; the sensor that comes back is configured as set. */
-static void test_a_sensor_that_stays_away(void)
+TEST(test_a_sensor_that_stays_away)
 {
     talk_start_noisy(&stream, 100.0, 0.0);
     size_t note = talk_typed("selftest", 900.0);
@@ -232,7 +230,7 @@ static void test_a_sensor_that_stays_away(void)
 }
 
 /* What of it changes the sensor ends the test, what does not leaves it its result; `stop` and `go` as always. */
-static void test_commands_in_the_middle(void)
+TEST(test_commands_in_the_middle)
 {
     static const struct {
         const char *command;
@@ -257,7 +255,7 @@ static void test_commands_in_the_middle(void)
     }
 }
 
-static void test_stop_in_the_middle(void)
+TEST(test_stop_in_the_middle)
 {
     for (double at_ms = 5.0; at_ms < 1500.0; at_ms += 61.0) {
         talk_start_noisy(&stream, 100.0, 0.0);
@@ -275,7 +273,7 @@ static void test_stop_in_the_middle(void)
     }
 }
 
-static void test_one_at_a_time(void)
+TEST(test_one_at_a_time)
 {
     talk_start_noisy(&stream, 100.0, 0.0);
     size_t note = talk_typed("selftest", 300.0);
@@ -290,7 +288,7 @@ static void test_one_at_a_time(void)
 }
 
 /* Not while nothing is measured: told at once. */
-static void test_without_samples_there_is_no_measurement(void)
+TEST(test_without_samples_there_is_no_measurement)
 {
     talk_start_noisy(&stream, 100.0, 0.0);
     (void)talk_typed("stop", 200.0);
@@ -308,7 +306,7 @@ static void test_without_samples_there_is_no_measurement(void)
 }
 
 /* After a reset of the MCU amid the force the sensor has it still, until it is configured. */
-static void test_a_reset_amid_the_force(void)
+TEST(test_a_reset_amid_the_force)
 {
     talk_start_noisy(&stream, 100.0, 0.0);
     (void)talk_typed("selftest", 1000.0);
@@ -323,7 +321,7 @@ static void test_a_reset_amid_the_force(void)
 }
 
 /* A second net below the driver's own deadlines. */
-static void test_no_measurement_lasts_longer_than_two_minutes(void)
+TEST(test_no_measurement_lasts_longer_than_two_minutes)
 {
     talk_start_noisy(&stream, 100.0, 0.0);
     size_t note = talk_typed("noise", 100.0);
@@ -335,23 +333,4 @@ static void test_no_measurement_lasts_longer_than_two_minutes(void)
     count(COUNT_SECONDS);
     board_run_ms(100.0);
     talk_assert_note("# refused 9: samples lost or settings changed", note + 1);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_good_part_passes_at_any_rate_and_range);
-    RUN_TEST(test_rows_pause_and_begin_anew);
-    RUN_TEST(test_the_limits);
-    RUN_TEST(test_offsets_do_not_count);
-    RUN_TEST(test_a_board_that_moves_is_refused);
-    RUN_TEST(test_a_supply_that_fails_in_the_middle);
-    RUN_TEST(test_a_sensor_that_stays_away);
-    RUN_TEST(test_commands_in_the_middle);
-    RUN_TEST(test_stop_in_the_middle);
-    RUN_TEST(test_one_at_a_time);
-    RUN_TEST(test_without_samples_there_is_no_measurement);
-    RUN_TEST(test_a_reset_amid_the_force);
-    RUN_TEST(test_no_measurement_lasts_longer_than_two_minutes);
-    return UNITY_END();
 }

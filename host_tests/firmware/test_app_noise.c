@@ -5,11 +5,9 @@
 
 #include "settings/settings.h"
 #include "support/talk.h"
-#include "unity.h"
+#include "support/test.h"
 
 static stream_t stream;
-
-void setUp(void) {}
 
 void tearDown(void)
 {
@@ -20,7 +18,7 @@ void tearDown(void)
  * 256 readings of known noise: the estimate's own deviation is 1 / sqrt(512) = 4.4 % of rms; 18 % are four times that.
  * R is 1.5 times the variance. Told after 256 samples, of every second, fourth, eighth from 200 Hz on.
  */
-static void test_noise_at_any_rate(void)
+TEST(test_noise_at_any_rate)
 {
     static const struct {
         const char *command;
@@ -52,7 +50,7 @@ static void test_noise_at_any_rate(void)
 }
 
 /* The samples that it looks at are the rows' own: none is missing meanwhile. */
-static void test_noise_takes_nothing_from_the_rows(void)
+TEST(test_noise_takes_nothing_from_the_rows)
 {
     talk_start_noisy(&stream, 100.0, 0.0);
     size_t first = board.row_count;
@@ -65,7 +63,7 @@ static void test_noise_takes_nothing_from_the_rows(void)
 }
 
 /* Turning by 4.5 LSB in the time of a measurement, or a knock of 128: refused; the knock at once. */
-static void test_noise_of_a_board_that_moves_is_refused(void)
+TEST(test_noise_of_a_board_that_moves_is_refused)
 {
     for (int knock = 0; knock < 2; knock++) {
         stream = board_noisy_stream(6000, 100.0, 1.5, 13u);
@@ -85,7 +83,7 @@ static void test_noise_of_a_board_that_moves_is_refused(void)
     }
 }
 
-static void test_noise_ends_with_another_rate_and_goes_on_with_another_filter(void)
+TEST(test_noise_ends_with_another_rate_and_goes_on_with_another_filter)
 {
     static const struct {
         const char *command;
@@ -103,7 +101,7 @@ static void test_noise_ends_with_another_rate_and_goes_on_with_another_filter(vo
 }
 
 /* A sensor whose clock is 2 % fast, 3 % slow or right; the measurement itself is good to some ppm. */
-static void test_odr_tells_the_measured_rate(void)
+TEST(test_odr_tells_the_measured_rate)
 {
     static const struct {
         double ppm;
@@ -120,23 +118,11 @@ static void test_odr_tells_the_measured_rate(void)
     }
 }
 
-static void test_odr_is_not_known_before_sixteen_samples(void)
+TEST(test_odr_is_not_known_before_sixteen_samples)
 {
     talk_start_noisy(&stream, 100.0, 0.0);
     (void)talk_typed("rate 12.5", 100.0);
     talk_assert_note("# odr: not measured yet", talk_typed("odr", 1000.0));
     board_run_ms(1000.0);
     talk_assert_note("# odr 12.50 Hz, 0 % from 12.5 Hz", talk_typed("odr", 200.0));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_noise_at_any_rate);
-    RUN_TEST(test_noise_takes_nothing_from_the_rows);
-    RUN_TEST(test_noise_of_a_board_that_moves_is_refused);
-    RUN_TEST(test_noise_ends_with_another_rate_and_goes_on_with_another_filter);
-    RUN_TEST(test_odr_tells_the_measured_rate);
-    RUN_TEST(test_odr_is_not_known_before_sixteen_samples);
-    return UNITY_END();
 }

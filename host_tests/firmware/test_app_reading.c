@@ -9,11 +9,7 @@
 #include "support/documented_limits.h"
 #include "support/roles.h"
 #include "support/talk.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test.h"
 
 /* After the last line of a long answer no row for so long; the next has the flag, and those in between are counted. */
 static void assert_rows_wait(const char *command)
@@ -38,7 +34,7 @@ static void assert_rows_wait(const char *command)
     }
 }
 
-static void test_rows_wait_while_a_long_answer_is_read(void)
+TEST(test_rows_wait_while_a_long_answer_is_read)
 {
     assert_rows_wait("help");
     assert_rows_wait("settings");
@@ -47,7 +43,7 @@ static void test_rows_wait_while_a_long_answer_is_read(void)
 }
 
 /* By the time of the samples, in steps of 65.536 ms: to the one that is nearest. */
-static void test_rows_are_held_to_the_nearest_step(void)
+TEST(test_rows_are_held_to_the_nearest_step)
 {
     enum { STEP_US = 65536, STEPS = (1000000 * LIMIT_HELD_S + STEP_US / 2) / STEP_US };
     for (uint32_t steps = STEPS - 1; steps <= STEPS + 1; steps++) {
@@ -63,7 +59,7 @@ static void test_rows_are_held_to_the_nearest_step(void)
 }
 
 /* Samples are filtered meanwhile: the first row afterwards is where a filter that went on is. */
-static void test_filters_go_on_meanwhile(void)
+TEST(test_filters_go_on_meanwhile)
 {
     talk_start();
     uint32_t before = counted(COUNT_SAMPLES);
@@ -72,7 +68,7 @@ static void test_filters_go_on_meanwhile(void)
     TEST_ASSERT_UINT32_WITHIN(2, before + 150u, counted(COUNT_SAMPLES));
 }
 
-static void test_short_answers_and_a_reset_hold_no_row(void)
+TEST(test_short_answers_and_a_reset_hold_no_row)
 {
     talk_start();
     board_type("rate");
@@ -83,7 +79,7 @@ static void test_short_answers_and_a_reset_hold_no_row(void)
 }
 
 /* Who types on has read it: Enter alone, too. */
-static void test_the_next_line_lets_rows_go_on(void)
+TEST(test_the_next_line_lets_rows_go_on)
 {
     static const char *const lines[] = { "", "rate" };
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
@@ -99,7 +95,7 @@ static void test_the_next_line_lets_rows_go_on(void)
     }
 }
 
-static void test_a_plot_goes_on(void)
+TEST(test_a_plot_goes_on)
 {
     talk_start();
     talk_type("mode plot");
@@ -108,7 +104,7 @@ static void test_a_plot_goes_on(void)
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_HELD));
 }
 
-static void test_the_filter_in_force_keeps_its_parameters(void)
+TEST(test_the_filter_in_force_keeps_its_parameters)
 {
     talk_start();
     talk_type("filter {robust}");
@@ -126,7 +122,7 @@ static void test_the_filter_in_force_keeps_its_parameters(void)
 }
 
 /* A parameter typed as it was before its filter was left is no unchanged one: the filter gets it. */
-static void test_a_parameter_typed_again_after_another_filter_counts(void)
+TEST(test_a_parameter_typed_again_after_another_filter_counts)
 {
     talk_start();
     talk_type("filter {robust}");
@@ -139,7 +135,7 @@ static void test_a_parameter_typed_again_after_another_filter_counts(void)
 }
 
 /* Long answers first: a change of the line's rate behind them stops the filters for the last one at most. */
-static void test_a_change_of_baud_behind_long_answers_resets_nothing(void)
+TEST(test_a_change_of_baud_behind_long_answers_resets_nothing)
 {
     static const char *const lines[] = { "help", "status" };
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
@@ -156,7 +152,7 @@ static void test_a_change_of_baud_behind_long_answers_resets_nothing(void)
     }
 }
 
-static void test_help_lists_the_parameters_of_the_filter_in_force(void)
+TEST(test_help_lists_the_parameters_of_the_filter_in_force)
 {
     talk_start();
     talk_type("filter {robust}");
@@ -173,26 +169,9 @@ static void test_help_lists_the_parameters_of_the_filter_in_force(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# every: 1 to 10000", before));
 }
 
-static void test_the_version_is_said(void)
+TEST(test_the_version_is_said)
 {
     talk_start();
     TEST_ASSERT_EQUAL_STRING(board.notes[0], talk_answer("version"));
     TEST_ASSERT_EQUAL_STRING_LEN("# tilt-uno ", board.notes[0], 11);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_rows_wait_while_a_long_answer_is_read);
-    RUN_TEST(test_rows_are_held_to_the_nearest_step);
-    RUN_TEST(test_filters_go_on_meanwhile);
-    RUN_TEST(test_short_answers_and_a_reset_hold_no_row);
-    RUN_TEST(test_the_next_line_lets_rows_go_on);
-    RUN_TEST(test_a_plot_goes_on);
-    RUN_TEST(test_the_filter_in_force_keeps_its_parameters);
-    RUN_TEST(test_a_parameter_typed_again_after_another_filter_counts);
-    RUN_TEST(test_a_change_of_baud_behind_long_answers_resets_nothing);
-    RUN_TEST(test_help_lists_the_parameters_of_the_filter_in_force);
-    RUN_TEST(test_the_version_is_said);
-    return UNITY_END();
 }

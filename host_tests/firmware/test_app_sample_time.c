@@ -9,14 +9,12 @@
 #include "support/board.h"
 #include "support/documented_limits.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/test.h"
 
 void setUp(void)
 {
     *hang_stages_here() = 0;
 }
-
-void tearDown(void) {}
 
 /*
  * A processor of 15.5 MHz: 19,375 cycles a sample at 800 Hz, 11,075 without the rest of its way. 3 x 4,350 of the
@@ -59,7 +57,7 @@ static void type_filter(filter_kind_t kind)
     type_and_read(typed, answer);
 }
 
-static void test_a_filter_too_slow_for_the_rate_is_refused(void)
+TEST(test_a_filter_too_slow_for_the_rate_is_refused)
 {
     board_start_with_a_slow_processor();
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
@@ -79,7 +77,7 @@ static void test_a_filter_too_slow_for_the_rate_is_refused(void)
     type_and_read("filter {slowest}", "# filter {slowest}");
 }
 
-static void test_a_rate_too_fast_for_the_filter_is_refused(void)
+TEST(test_a_rate_too_fast_for_the_filter_is_refused)
 {
     board_start_with_a_slow_processor();
     type_and_read("filter {slowest}", "# filter {slowest}");
@@ -101,7 +99,7 @@ static void test_a_rate_too_fast_for_the_filter_is_refused(void)
 }
 
 /* On this board: what starts is allowed, what is refused. */
-static void test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_hz(void)
+TEST(test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_hz)
 {
     board_start_resting();
     TEST_ASSERT_TRUE(settings_fit(settings()->choice.filter, settings()->rate_dhz));
@@ -123,7 +121,7 @@ static void test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_
 }
 
 /* At 1,000,000 baud the line carries every row at 800 Hz; the filter leaves time for one in several. */
-static void test_every_follows_what_the_filter_leaves_time_for(void)
+TEST(test_every_follows_what_the_filter_leaves_time_for)
 {
     board_start_resting();
     board_run_ms(200);
@@ -151,14 +149,4 @@ static void test_every_follows_what_the_filter_leaves_time_for(void)
     }
     type_and_read("rate 100", "# rate 100 Hz, I2C at 363.6 kHz");
     TEST_ASSERT_EQUAL_UINT16(1, settings_every_in_force());
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_filter_too_slow_for_the_rate_is_refused);
-    RUN_TEST(test_a_rate_too_fast_for_the_filter_is_refused);
-    RUN_TEST(test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_hz);
-    RUN_TEST(test_every_follows_what_the_filter_leaves_time_for);
-    return UNITY_END();
 }

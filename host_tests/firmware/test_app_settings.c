@@ -9,11 +9,9 @@
 #include "settings/settings_table.h"
 #include "support/roles.h"
 #include "support/talk.h"
-#include "unity.h"
+#include "support/test.h"
 
 static stream_t stream;
-
-void setUp(void) {}
 
 void tearDown(void)
 {
@@ -21,7 +19,7 @@ void tearDown(void)
 }
 
 /* R at 100 Hz: 1.5 x 0.02 x 100 = 3 LSB^2. */
-static void test_parameters_are_shown_set_and_refused(void)
+TEST(test_parameters_are_shown_set_and_refused)
 {
     static const struct {
         const char *typed, *answer;
@@ -57,7 +55,7 @@ static void test_parameters_are_shown_set_and_refused(void)
     }
 }
 
-static void test_an_unknown_filter_is_refused_with_the_list(void)
+TEST(test_an_unknown_filter_is_refused_with_the_list)
 {
     char answer[200] = "# refused 4: filter is one of";
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
@@ -80,7 +78,7 @@ static double roughness(size_t from)
 }
 
 /* A Kalman filter's gain follows q / R. R as set, not as estimated: 1000 for a noise of 2 LSB smooths far more. */
-static void test_parameters_reach_the_filter(void)
+TEST(test_parameters_reach_the_filter)
 {
     static const char *const typed[] = {
         "filter {plain}", "r 1000", "r 0.1", "q 1", "filter {robust}", "filter {plain}"
@@ -104,7 +102,7 @@ static void test_parameters_reach_the_filter(void)
 }
 
 /* No parameter of one filter is taken for one of another while the pipeline changes. */
-static void test_changes_in_quick_succession(void)
+TEST(test_changes_in_quick_succession)
 {
     talk_start();
     size_t before = board.note_count;
@@ -121,7 +119,7 @@ static void test_changes_in_quick_succession(void)
 }
 
 /* Each line names a setting, its value and what is legal; each, typed as it is told, changes nothing. */
-static void test_the_listing_can_be_typed_again(void)
+TEST(test_the_listing_can_be_typed_again)
 {
     char listed[40][BOARD_NOTE_LENGTH];
     talk_start();
@@ -155,7 +153,7 @@ static void test_the_listing_can_be_typed_again(void)
 }
 
 /* The virtual sensor is at 0x53. */
-static void test_address(void)
+TEST(test_address)
 {
     talk_start();
     TEST_ASSERT_EQUAL_STRING("# address auto", talk_answer("address"));
@@ -182,7 +180,7 @@ static void test_address(void)
 }
 
 /* The speed is in force with the reply, is saved, and stands in the line of the rate. */
-static void test_i2c(void)
+TEST(test_i2c)
 {
     talk_start();
     TEST_ASSERT_EQUAL_STRING("# i2c auto", talk_answer("i2c"));
@@ -230,7 +228,7 @@ static int determinant(const char name[3])
 }
 
 /* Of 216 triples the 24 that are rotations. */
-static void test_axes(void)
+TEST(test_axes)
 {
     static const char letters[] = "xyzXYZ";
     int taken = 0;
@@ -248,7 +246,7 @@ static void test_axes(void)
 }
 
 /* The resting board reads (31, -53, 248): by hand what offsets, scales and axes make of it. */
-static void test_calibration_reaches_the_rows(void)
+TEST(test_calibration_reaches_the_rows)
 {
     stream = board_constant_stream(200, 100.0, 31, -53, 248);
     board_start(&stream, 0.0, 0);
@@ -291,7 +289,7 @@ static void test_calibration_reaches_the_rows(void)
 }
 
 /* What tare makes of a part that reads more than 1 g is told, and can be typed again: 264 / 256 = 1.03125. */
-static void test_a_level_of_more_than_1_g_can_be_typed_again(void)
+TEST(test_a_level_of_more_than_1_g_can_be_typed_again)
 {
     stream = board_constant_stream(800, 100.0, 0, 0, 264);
     for (size_t i = 0; i < stream.count; i++) { /* else it is stuck */
@@ -308,7 +306,7 @@ static void test_a_level_of_more_than_1_g_can_be_typed_again(void)
 }
 
 /* b0 0.05 is stable beside the b1 of 800 Hz (-0.0407), not beside that of 400 Hz (-0.0780): the sum is negative. */
-static void test_a_rate_at_which_the_parameters_do_not_go_together(void)
+TEST(test_a_rate_at_which_the_parameters_do_not_go_together)
 {
     char line[40];
     talk_start();
@@ -325,7 +323,7 @@ static void test_a_rate_at_which_the_parameters_do_not_go_together(void)
     }
 }
 
-static void test_numbers(void)
+TEST(test_numbers)
 {
     static const struct {
         const char *text;
@@ -361,22 +359,4 @@ static void test_numbers(void)
     uint32_t value;
     TEST_ASSERT_TRUE(number_parse(&rest, 0, &value));
     TEST_ASSERT_EQUAL_STRING("2", rest);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_parameters_are_shown_set_and_refused);
-    RUN_TEST(test_an_unknown_filter_is_refused_with_the_list);
-    RUN_TEST(test_parameters_reach_the_filter);
-    RUN_TEST(test_changes_in_quick_succession);
-    RUN_TEST(test_the_listing_can_be_typed_again);
-    RUN_TEST(test_address);
-    RUN_TEST(test_i2c);
-    RUN_TEST(test_axes);
-    RUN_TEST(test_calibration_reaches_the_rows);
-    RUN_TEST(test_a_level_of_more_than_1_g_can_be_typed_again);
-    RUN_TEST(test_a_rate_at_which_the_parameters_do_not_go_together);
-    RUN_TEST(test_numbers);
-    return UNITY_END();
 }

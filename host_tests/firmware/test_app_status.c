@@ -9,16 +9,12 @@
 #include "hal_i2c.h"
 #include "hal_sleep.h"
 #include "support/board.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum {
     STATUS_LINES = 7,
     READ_BUS_EVENTS = 5
 }; /* START, address, register, repeated START, address: then the data come */
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* First lines of the newest reply to `status` and of the one before it: some counters go on from test to test. */
 static size_t newest;
@@ -81,7 +77,7 @@ static void disturb(uint8_t status, unsigned events)
     TEST_ASSERT_TRUE_MESSAGE(hal_host_faults.next_status < 0, "the disturbance has not happened");
 }
 
-static void test_failed_transfers_are_told_apart(void)
+TEST(test_failed_transfers_are_told_apart)
 {
     static const struct {
         uint8_t status, events, times;
@@ -115,7 +111,7 @@ static void test_failed_transfers_are_told_apart(void)
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault 3", 0));
 }
 
-static void test_a_calm_sensor_counts_nothing(void)
+TEST(test_a_calm_sensor_counts_nothing)
 {
     static const char *const names[] = { "clipped ",       "dropped ",  "lines refused ",    "lost ",
                                          "drained ",       "stuck ",    "restarts ",         "empty ",
@@ -146,7 +142,7 @@ static uint8_t corrupt(uint8_t reg, uint8_t byte)
     return byte ^ 0x04;
 }
 
-static void test_readings_that_were_none_are_told(void)
+TEST(test_readings_that_were_none_are_told)
 {
     stream_t stream = board_noisy_stream(1000, 100.0, 1.5, 21u);
     start(&stream, corrupt);
@@ -174,7 +170,7 @@ static uint8_t look_at_source(uint8_t reg, uint8_t byte)
 }
 
 /* Main stands still for longer than the FIFO is deep, or for less; what it reads late is drained. */
-static void test_overruns_are_told(void)
+TEST(test_overruns_are_told)
 {
     stream_t stream = board_noisy_stream(1000, 100.0, 1.5, 22u);
     start(&stream, look_at_source);
@@ -196,7 +192,7 @@ static void test_overruns_are_told(void)
 }
 
 /* INT1 is held high: the sensor is looked at, and has nothing, again and again. */
-static void test_readings_without_a_sample_are_told(void)
+TEST(test_readings_without_a_sample_are_told)
 {
     stream_t stream = board_noisy_stream(1000, 100.0, 1.5, 23u);
     start(&stream, look_at_source);
@@ -212,7 +208,7 @@ static void test_readings_without_a_sample_are_told(void)
     stream_free(&stream);
 }
 
-static void test_stuck_samples_are_counted(void)
+TEST(test_stuck_samples_are_counted)
 {
     stream_t stream = board_hung_stream(1000, 11u, 300, 60);
     start(&stream, NULL);
@@ -223,7 +219,7 @@ static void test_stuck_samples_are_counted(void)
 }
 
 /* Nobody has answered yet: there is no rate. */
-static void test_no_sensor_has_no_rate(void)
+TEST(test_no_sensor_has_no_rate)
 {
     board_start_resting();
     adxl345_model_power(&hal_host_sensor, false);
@@ -232,7 +228,7 @@ static void test_no_sensor_has_no_rate(void)
     TEST_ASSERT_NOT_NULL(strstr(board.notes[newest], "fault 1, rate 100 Hz, measured 0.00 Hz, uptime s 0"));
 }
 
-static void test_restarts_are_counted(void)
+TEST(test_restarts_are_counted)
 {
     start(NULL, NULL);
     for (unsigned n = 0; n < 4; n++) {
@@ -247,7 +243,7 @@ static void test_restarts_are_counted(void)
 }
 
 /* INT1 was away for some samples, or a slave hung: what has gathered is fetched, and no sample is lost from then on. */
-static void test_a_fifo_that_is_behind_is_fetched(void)
+TEST(test_a_fifo_that_is_behind_is_fetched)
 {
     static const char *const commands[] = { "rate 400", "rate 800" };
     for (unsigned i = 0; i < 4; i++) {
@@ -272,7 +268,7 @@ static void test_a_fifo_that_is_behind_is_fetched(void)
 }
 
 /* INT1 that came back is none: the sensor keeps its configuration. Nor is what a command asks for. */
-static void test_what_is_no_restart(void)
+TEST(test_what_is_no_restart)
 {
     start(NULL, NULL);
     board_run_ms(300);
@@ -289,7 +285,7 @@ static void test_what_is_no_restart(void)
 }
 
 /* The sensor's clock is off by up to 5 %: what is told is its rate, within 0.05 %, at every rate. */
-static void test_measured_rate(void)
+TEST(test_measured_rate)
 {
     static const char *const rates[] = { "12.5", "25", "50", "100", "200", "400", "800" };
     static const double ppm[] = { 0, 50000, -50000, 21634, -123 };
@@ -318,21 +314,4 @@ static void test_measured_rate(void)
         }
         stream_free(&stream);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_no_sensor_has_no_rate); /* first: the driver keeps what it has measured */
-    RUN_TEST(test_failed_transfers_are_told_apart);
-    RUN_TEST(test_a_calm_sensor_counts_nothing);
-    RUN_TEST(test_readings_that_were_none_are_told);
-    RUN_TEST(test_overruns_are_told);
-    RUN_TEST(test_readings_without_a_sample_are_told);
-    RUN_TEST(test_stuck_samples_are_counted);
-    RUN_TEST(test_restarts_are_counted);
-    RUN_TEST(test_what_is_no_restart);
-    RUN_TEST(test_a_fifo_that_is_behind_is_fetched);
-    RUN_TEST(test_measured_rate);
-    return UNITY_END();
 }

@@ -11,11 +11,7 @@
 #include "path/pipeline.h"
 #include "support/board.h"
 #include "support/documented_limits.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test.h"
 
 /*
  * One pattern of 2^20 us, begun in its dark part: so many flashes of 65.5 ms. main looks every 8.2 ms at the latest, so
@@ -41,7 +37,7 @@ static void assert_led_flashes(unsigned times)
     TEST_ASSERT_DOUBLE_WITHIN(10.0 * times, (LIMIT_LED_MS + 0.5) * times, lit_ms);
 }
 
-static void test_led_flashes_by_what_to_look_at(void)
+TEST(test_led_flashes_by_what_to_look_at)
 {
     board_start_resting();
     board_run_ms(500);
@@ -64,7 +60,7 @@ static void test_led_flashes_by_what_to_look_at(void)
 }
 
 /* Every code has words, also those that only a real sensor or bus can bring about. */
-static void test_each_fault_has_its_words(void)
+TEST(test_each_fault_has_its_words)
 {
     board_start_resting();
     board_run_ms(500);
@@ -81,7 +77,7 @@ static void test_each_fault_has_its_words(void)
 }
 
 /* A change of rate stops the sensor for a moment: no sample is missing. */
-static void test_a_change_of_rate_loses_nothing(void)
+TEST(test_a_change_of_rate_loses_nothing)
 {
     board_start_resting();
     board_run_ms(500);
@@ -93,7 +89,7 @@ static void test_a_change_of_rate_loses_nothing(void)
 }
 
 /* What is missing of a second at the new rate: the old one ends with its command. */
-static void test_a_change_of_rate_in_an_outage_forgets_no_sample(void)
+TEST(test_a_change_of_rate_in_an_outage_forgets_no_sample)
 {
     board_start_resting();
     board_run_ms(500);
@@ -118,7 +114,7 @@ static stream_t two_sensors(void)
 }
 
 /* A command configures the sensor anew, which mends neither its wires nor itself: nothing is over by it. */
-static void test_a_command_does_not_call_a_lasting_fault_over(void)
+TEST(test_a_command_does_not_call_a_lasting_fault_over)
 {
     static const uint8_t faults[] = { ADXL345_FAULT_INT1_STUCK, ADXL345_FAULT_STUCK, ADXL345_FAULT_TWO_SENSORS };
     static const char *const commands[] = { "rate 50", "range 8", "rate 100" };
@@ -147,7 +143,7 @@ static void test_a_command_does_not_call_a_lasting_fault_over(void)
 }
 
 /* What repeats, or holds INT1, may have been taken away with the supply: no suspicion is left. */
-static void test_a_sensor_that_was_away_is_not_suspected(void)
+TEST(test_a_sensor_that_was_away_is_not_suspected)
 {
     stream_t stream = board_hung_stream(8000, 5u, 100, 110);
     board_start(&stream, 0.0, 0);
@@ -163,16 +159,4 @@ static void test_a_sensor_that_was_away_is_not_suspected(void)
     }
     TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_NONE, adxl345_fault());
     stream_free(&stream);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_led_flashes_by_what_to_look_at);
-    RUN_TEST(test_each_fault_has_its_words);
-    RUN_TEST(test_a_change_of_rate_loses_nothing);
-    RUN_TEST(test_a_change_of_rate_in_an_outage_forgets_no_sample);
-    RUN_TEST(test_a_command_does_not_call_a_lasting_fault_over);
-    RUN_TEST(test_a_sensor_that_was_away_is_not_suspected);
-    return UNITY_END();
 }

@@ -16,7 +16,7 @@
 #include "settings/settings.h"
 #include "support/board.h"
 #include "support/documented_limits.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { STARTS_S = 1 }; /* the first second warms up */
 
@@ -27,8 +27,6 @@ void setUp(void)
 {
     t_us = 0;
 }
-
-void tearDown(void) {}
 
 static void begin(void)
 {
@@ -66,7 +64,7 @@ static void seconds(int many, int16_t z_lsb, uint16_t flags)
     }
 }
 
-static void test_ten_seconds_at_rest_and_the_first_within(void)
+TEST(test_ten_seconds_at_rest_and_the_first_within)
 {
     begin();
     seconds(STARTS_S + LIMIT_NO_GRAVITY_S - 1, 20, 0);
@@ -99,7 +97,7 @@ static bool lacks(int16_t x_lsb, int16_t y_lsb, int16_t z_lsb)
     return gravity_absent();
 }
 
-static void test_the_limits_on_every_axis(void)
+TEST(test_the_limits_on_every_axis)
 {
     static const int limits_lsb[] = { LIMIT_GRAVITY_LEAST_LSB, LIMIT_GRAVITY_MOST_LSB };
     for (size_t i = 0; i < 2; i++) {
@@ -120,7 +118,7 @@ static void test_the_limits_on_every_axis(void)
 }
 
 /* Neither counted nor a break: it is not known what the sensor read. */
-static void test_a_second_with_disturbed_samples_proves_nothing(void)
+TEST(test_a_second_with_disturbed_samples_proves_nothing)
 {
     static const uint16_t flags[] = { ROW_COASTED, ROW_COASTED | ROW_FAULT, ROW_STUCK, ROW_CLIPPED, ROW_WARMING_UP };
     for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++) {
@@ -136,7 +134,7 @@ static void test_a_second_with_disturbed_samples_proves_nothing(void)
     }
 }
 
-static void test_seconds_without_samples_prove_nothing(void)
+TEST(test_seconds_without_samples_prove_nothing)
 {
     begin();
     seconds(STARTS_S + 1, 20, 0);
@@ -147,7 +145,7 @@ static void test_seconds_without_samples_prove_nothing(void)
 }
 
 /* As on a wheel that turns: it does not read gravity, but is not at rest. */
-static void test_a_second_that_moves_restarts_the_ten(void)
+TEST(test_a_second_that_moves_restarts_the_ten)
 {
     begin();
     for (int k = 0; k < 5; k++) {
@@ -202,7 +200,7 @@ static void assert_lines(size_t first, size_t last)
     TEST_ASSERT_EQUAL_size_t(last, board_notes_with(last_line, 0));
 }
 
-static void test_it_is_reported_once_and_ends_with_its_length(void)
+TEST(test_it_is_reported_once_and_ends_with_its_length)
 {
     start(20, 10000);
     assert_lines(0, 0);
@@ -227,7 +225,7 @@ static void test_it_is_reported_once_and_ends_with_its_length(void)
     TEST_ASSERT_EQUAL_HEX(0x53, address);
 }
 
-static void test_the_drivers_faults_begin_and_end_meanwhile(void)
+TEST(test_the_drivers_faults_begin_and_end_meanwhile)
 {
     start(20, 13000);
     assert_lines(1, 0);
@@ -245,7 +243,7 @@ static void test_the_drivers_faults_begin_and_end_meanwhile(void)
 }
 
 /* Both end during a plot, so that both lines are due at once: each has its own numbers. */
-static void test_the_ends_of_two_faults_do_not_mix(void)
+TEST(test_the_ends_of_two_faults_do_not_mix)
 {
     start(20, 13000);
     adxl345_model_power(&hal_host_sensor, false);
@@ -264,7 +262,7 @@ static void test_the_ends_of_two_faults_do_not_mix(void)
     TEST_ASSERT_EQUAL_size_t(2, board_notes_with("over: after", 0));
 }
 
-static void test_nothing_is_reported_in_a_plot(void)
+TEST(test_nothing_is_reported_in_a_plot)
 {
     start(20, 300);
     board_type("mode plot");
@@ -280,7 +278,7 @@ static void test_nothing_is_reported_in_a_plot(void)
     assert_lines(1, 0);
 }
 
-static void test_stop_and_go_leave_it_as_it_is(void)
+TEST(test_stop_and_go_leave_it_as_it_is)
 {
     start(20, 13000);
     board_type("stop");
@@ -294,7 +292,7 @@ static void test_stop_and_go_leave_it_as_it_is(void)
     assert_lines(1, 0);
 }
 
-static void test_measurements_neither_count_nor_forget(void)
+TEST(test_measurements_neither_count_nor_forget)
 {
     static const char *const commands[] = { "selftest", "noise", "tare", "cal" };
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
@@ -310,7 +308,7 @@ static void test_measurements_neither_count_nor_forget(void)
 }
 
 /* A full queue of notices refuses the line: it is told when there is room, and so is the end. */
-static void test_a_full_queue_delays_the_lines_alone(void)
+TEST(test_a_full_queue_delays_the_lines_alone)
 {
     start(20, 10000);
     fill_for_ms(3000);
@@ -325,7 +323,7 @@ static void test_a_full_queue_delays_the_lines_alone(void)
 }
 
 /* Wires off and on again, values that hang, and a stop: all with a sound sensor. */
-static void test_a_sound_sensor_is_never_accused(void)
+TEST(test_a_sound_sensor_is_never_accused)
 {
     static const int16_t z_lsb[] = { 256 + 64, 256 - 64, -256 - 64, -256 + 64 };
     for (size_t i = 0; i < sizeof z_lsb / sizeof z_lsb[0]; i++) {
@@ -346,20 +344,6 @@ static void test_a_sound_sensor_is_never_accused(void)
 
 int main(void)
 {
-    UNITY_BEGIN();
-    RUN_TEST(test_ten_seconds_at_rest_and_the_first_within);
-    RUN_TEST(test_the_limits_on_every_axis);
-    RUN_TEST(test_a_second_with_disturbed_samples_proves_nothing);
-    RUN_TEST(test_seconds_without_samples_prove_nothing);
-    RUN_TEST(test_a_second_that_moves_restarts_the_ten);
-    RUN_TEST(test_it_is_reported_once_and_ends_with_its_length);
-    RUN_TEST(test_the_drivers_faults_begin_and_end_meanwhile);
-    RUN_TEST(test_the_ends_of_two_faults_do_not_mix);
-    RUN_TEST(test_nothing_is_reported_in_a_plot);
-    RUN_TEST(test_stop_and_go_leave_it_as_it_is);
-    RUN_TEST(test_measurements_neither_count_nor_forget);
-    RUN_TEST(test_a_full_queue_delays_the_lines_alone);
-    RUN_TEST(test_a_sound_sensor_is_never_accused);
     stream_free(&stream);
-    return UNITY_END();
+    return test_all();
 }

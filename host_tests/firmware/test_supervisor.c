@@ -8,7 +8,7 @@
 #include "support/board.h"
 #include "support/random.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -24,10 +24,6 @@ enum { SAMPLES = 2400, FAULT_FROM = 800, FAULT_TO = 2000, RATE_HZ = 100 };
 static const double scales[3] = { 265.0, 265.0, 256.0 };
 
 typedef enum { HEALTHY, FROZEN, AT_ZERO, AT_RAIL } fault_t;
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* From 15 to 60 degrees and back in 12 s, pitch 10 degrees. */
 static double roll_deg_at(double t_s)
@@ -124,28 +120,28 @@ static void assert_left_out(uint8_t bad, fault_t fault)
     stream_free(&stream);
 }
 
-static void test_a_bad_x_is_left_out(void)
+TEST(test_a_bad_x_is_left_out)
 {
     assert_left_out(0, FROZEN);
     assert_left_out(0, AT_ZERO);
     assert_left_out(0, AT_RAIL);
 }
 
-static void test_a_bad_z_is_left_out(void)
+TEST(test_a_bad_z_is_left_out)
 {
     assert_left_out(2, FROZEN);
     assert_left_out(2, AT_ZERO);
     assert_left_out(2, AT_RAIL);
 }
 
-static void test_a_bad_y_is_left_out(void)
+TEST(test_a_bad_y_is_left_out)
 {
     assert_left_out(1, FROZEN);
     assert_left_out(1, AT_ZERO);
     assert_left_out(1, AT_RAIL);
 }
 
-static void test_a_healthy_board_leaves_none_out(void)
+TEST(test_a_healthy_board_leaves_none_out)
 {
     stream_t stream = rolling_stream(0, HEALTHY);
     run(&stream, "auto");
@@ -156,7 +152,7 @@ static void test_a_healthy_board_leaves_none_out(void)
 }
 
 /* Another filter believes the axis: the angle is wrong by tens of degrees, and nothing is flagged. */
-static void test_another_filter_leaves_none_out(void)
+TEST(test_another_filter_leaves_none_out)
 {
     stream_t stream = rolling_stream(2, AT_ZERO);
     run(&stream, by_role("{plain}"));
@@ -167,7 +163,7 @@ static void test_another_filter_leaves_none_out(void)
 }
 
 /* Of two bad axes none can be made up. */
-static void test_two_bad_axes_are_too_many(void)
+TEST(test_two_bad_axes_are_too_many)
 {
     stream_t stream = rolling_stream(2, AT_ZERO);
     for (int i = FAULT_FROM; i < FAULT_TO; i++) {
@@ -206,7 +202,7 @@ static double sigma_of_cdeg(uint8_t axis, const char *every)
 }
 
 /* `status` names the members, and the axis with the sigma of the direction: noise and 10 LSB of the part, 1 / cos. */
-static void test_status_tells_choices_and_the_axis_left_out(void)
+TEST(test_status_tells_choices_and_the_axis_left_out)
 {
     double sigma_cdeg = sigma_of_cdeg(2, "every 1");
     /* R is 1.5 x 2.25 LSB^2; variance gains of the members 0.05 to 0.4; the component 0.6 to 1 of 1 g; rounded down */
@@ -231,7 +227,7 @@ static double sigma_told_cdeg(void)
  * The noisier of the axes that remain, whichever comes first: x still and y rolling, and the other way round. With an R
  * of 1000 LSB^2 the members' gains make the difference, and not the 10 LSB of the part.
  */
-static void test_the_sigma_told_is_that_of_the_noisier_axis(void)
+TEST(test_the_sigma_told_is_that_of_the_noisier_axis)
 {
     double told_cdeg[2];
     for (int swapped = 0; swapped < 2; swapped++) {
@@ -255,7 +251,7 @@ static void test_the_sigma_told_is_that_of_the_noisier_axis(void)
 }
 
 /* A change of the choice is flagged: rarely at rest, and never with another filter. */
-static void test_changes_of_the_choice_are_flagged(void)
+TEST(test_changes_of_the_choice_are_flagged)
 {
     stream_t stream = rolling_stream(0, HEALTHY);
     run(&stream, "auto");
@@ -272,7 +268,7 @@ static void test_changes_of_the_choice_are_flagged(void)
 }
 
 /* While the axes change to another filter, the last one first, there is no choice of each to tell. */
-static void test_no_choices_are_told_of_a_filter_that_is_leaving(void)
+TEST(test_no_choices_are_told_of_a_filter_that_is_leaving)
 {
     stream_t stream = rolling_stream(0, HEALTHY);
     board_start(&stream, 0.0, 0);
@@ -292,20 +288,4 @@ static void test_no_choices_are_told_of_a_filter_that_is_leaving(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# state streaming", first));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("chosen", first));
     stream_free(&stream);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_healthy_board_leaves_none_out);
-    RUN_TEST(test_a_bad_x_is_left_out);
-    RUN_TEST(test_a_bad_z_is_left_out);
-    RUN_TEST(test_a_bad_y_is_left_out);
-    RUN_TEST(test_another_filter_leaves_none_out);
-    RUN_TEST(test_two_bad_axes_are_too_many);
-    RUN_TEST(test_status_tells_choices_and_the_axis_left_out);
-    RUN_TEST(test_the_sigma_told_is_that_of_the_noisier_axis);
-    RUN_TEST(test_changes_of_the_choice_are_flagged);
-    RUN_TEST(test_no_choices_are_told_of_a_filter_that_is_leaving);
-    return UNITY_END();
 }

@@ -6,8 +6,8 @@
 #include "support/filters.h"
 #include "support/random.h"
 #include "support/shipped.h"
+#include "support/test.h"
 #include "tilt_filter.h"
-#include "unity.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -18,10 +18,6 @@
 static tilt_filter_t tilt;
 static char text[400];
 static uint8_t first_rows;
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 _Static_assert((int)TILT_GATED == (int)ROW_GATED && (int)TILT_COASTED == (int)ROW_COASTED &&
                    (int)TILT_REACQUIRED == (int)ROW_REACQUIRED && (int)TILT_CLIPPED == (int)ROW_CLIPPED &&
@@ -134,18 +130,11 @@ static void compare_file(const char *path, uint16_t rate_dhz)
     stream_free(&stream);
 }
 
-static void test_angles_and_flags_are_the_firmwares(void)
+TEST(test_angles_and_flags_are_the_firmwares)
 {
     for (size_t i = 0; i < SHIPPED_STREAMS; i++) {
         compare_file(shipped_streams[i].path, shipped_streams[i].rate_dhz);
     }
     compare_file("sim/streams/steps.csv", 1000);
     compare_file("sim/streams/steps-outliers.csv", 1000);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_angles_and_flags_are_the_firmwares);
-    return UNITY_END();
 }
