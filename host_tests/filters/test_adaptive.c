@@ -1,7 +1,6 @@
 /* The guarded adaptive filter: what it does with a ramp, outliers, a burst, a jump; limits of its parameters. */
 #include "adaptive.h"
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 enum { NOISE_LSB = 8 }; /* uniform, +-8 LSB: sigma 4.9 */
 
@@ -20,12 +19,11 @@ static int16_t noisy(int16_t level_lsb)
 /* Settled at a level, 100 Hz. */
 static filter_t settled(int16_t level_lsb, bool guarded)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
     if (!guarded) {
         config.value[ADAPTIVE_GUARD_SIGMA_Q8] = 0;
     }
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made(&filter_law_adaptive, &config);
     for (uint16_t k = 0; k < 600u; k++) {
         (void)filter_update(&f, noisy(level_lsb));
     }
@@ -46,8 +44,7 @@ TEST(an_isolated_outlier_moves_nothing)
     int32_t expected = coast(&without);
     TEST_ASSERT_EQUAL_INT32(expected, filter_update(&f, 2000));
     TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, f.flags);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_UINT16(0, probe.gain_uq16);
     TEST_ASSERT_TRUE(probe.innovation_lsb_q16 > 1800L * 65536);
     TEST_ASSERT_TRUE(probe.gate_lsb2_q8 < 100UL * 100UL * 256UL);
@@ -102,8 +99,7 @@ TEST(motion_is_followed_and_shortens_the_memory)
         shortest = (f.own.adaptive.k_uq32 > shortest) ? f.own.adaptive.k_uq32 : shortest;
     }
     TEST_ASSERT_INT16_WITHIN(2 * NOISE_LSB, level, whole(f.x_lsb_q16));
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_INT32_WITHIN(65536, 3L * 65536, probe.rate_lsb_q16);
     TEST_ASSERT_EQUAL_UINT16(f.own.adaptive.fast_uq16, (uint16_t)(shortest >> 16));
     TEST_ASSERT_TRUE(slow < shortest / 2U);
@@ -112,13 +108,10 @@ TEST(motion_is_followed_and_shortens_the_memory)
 /* At rest the memory grows by half a sample per sample, to the slowest: k = 2/N falls from 1/2 as 2 / (4 + n/2). */
 TEST(memory_grows_by_half_a_sample)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
     config.value[ADAPTIVE_SLOW_MS] = 60000;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
-    for (uint16_t k = 0; k < 405u; k++) {
-        (void)filter_update(&f, 0);
-    }
+    filter_t f = made(&filter_law_adaptive, &config);
+    feed(&f, 0, 405);
     double memory = 2.0 * 4294967296.0 /
                     (double)f.own.adaptive.k_uq32; /* 4 + 200, and 1/k grows a little faster at first */
     TEST_ASSERT_TRUE(memory > 200.0 && memory < 212.0);
@@ -127,10 +120,9 @@ TEST(memory_grows_by_half_a_sample)
 /* Mean of the scatter over the last four fifths of 2000 noisy samples, LSB / 256; R = 100 is set after each of them. */
 static uint32_t mean_scatter_uq8(bool identify)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
     config.value[ADAPTIVE_IDENTIFY] = identify ? 1 : 0;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made(&filter_law_adaptive, &config);
     uint32_t sum = 0;
     for (uint16_t k = 0; k < 2000u; k++) {
         (void)filter_update(&f, noisy(0));
@@ -189,11 +181,10 @@ TEST(a_gated_sample_keeps_the_saturation)
 /* Memories out of reach are limited, not refused: to 3.3 (k = 0.6) and 4096 samples, the shortest to the slowest. */
 TEST(memories_are_limited)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
     config.value[ADAPTIVE_SLOW_MS] = 10; /* one sample */
     config.value[ADAPTIVE_FAST_MS] = 1;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made(&filter_law_adaptive, &config);
     TEST_ASSERT_EQUAL_UINT16(39322, f.own.adaptive.slow_uq16);
     TEST_ASSERT_EQUAL_UINT16(39322, f.own.adaptive.fast_uq16);
     config.value[ADAPTIVE_SLOW_MS] = 60000; /* 6000 samples */
@@ -236,9 +227,7 @@ TEST(defaults_follow_one_rule)
 /* A sigma of 3 LSB learnt from noise; a restart that lost it would have the configured 1.7, the root of R = 3. */
 TEST(restart_keeps_what_was_learnt_of_the_noise)
 {
-    filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made_default(&filter_law_adaptive, 1000);
     for (uint16_t k = 0; k < 2000U; k++) {
         uint32_t v = random32(&random_state);
         int16_t sum = (int16_t)((v & 15U) + ((v >> 8) & 15U) + ((v >> 16) & 15U) + ((v >> 24) & 15U));

@@ -6,9 +6,9 @@
 #include "kalman.h"
 #include "stream.h"
 #include "support/chain.h"
+#include "support/law_tests.h"
 #include "support/random.h"
 #include "support/roles.h"
-#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -119,9 +119,7 @@ TEST(the_readmes_stream_is_stood)
 /* White noise at rest, ten minutes: variance over that of the slowest memory, and how often it was shortened. */
 static void at_rest(uint16_t rate_dhz, double sigma_lsb, double *variance, double *per_minute)
 {
-    filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_adaptive, rate_dhz);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made_default(&filter_law_adaptive, rate_dhz);
     test_random_t random;
     random_seed(&random, rate_dhz);
     long samples = 60L * rate_dhz;
@@ -162,13 +160,10 @@ TEST(noise_alone_seldom_shortens_the_memory)
 /* One bad sample among good ones is a stray; a second within 64 makes the gate half as wide, good ones undo it. */
 TEST(strays_tighten_the_gate_and_good_samples_open_it)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
     config.value[ADAPTIVE_IDENTIFY] = 0;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
-    for (int k = 0; k < 300; k++) {
-        (void)filter_update(&f, 100);
-    }
+    filter_t f = made(&filter_law_adaptive, &config);
+    feed(&f, 100, 300);
     uint32_t wide = f.own.adaptive.gate_lsb_uq16;
     for (int bad = 0; bad < 2; bad++) {
         (void)filter_update(&f, 900);
@@ -187,19 +182,16 @@ TEST(strays_tighten_the_gate_and_good_samples_open_it)
     (void)filter_update(&f, 900);
     filter_restart(&f);
     (void)filter_update(&f, 100);
-    for (int k = 1; k < 10; k++) {
-        (void)filter_update(&f, 100);
-    }
+    feed(&f, 100, 9);
     TEST_ASSERT_EQUAL_UINT8(0, f.own.adaptive.strays);
 }
 
 /* What is expected of an innovation stops at 256 LSB: 144 of noise and 128 of its mean would pass 16 bits. */
 TEST(the_gate_does_not_wrap)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
     config.value[ADAPTIVE_GUARD_SIGMA_Q8] = 4096;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made(&filter_law_adaptive, &config);
     filter_reset(&f, 0);
     f.own.adaptive.scatter_lsb_uq24 = ADAPTIVE_SCATTER_MAX_UQ24;
     f.own.adaptive.k_uq32 = (uint32_t)TRACKER_K_MAX_UQ16 << 16;

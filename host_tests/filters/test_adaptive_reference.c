@@ -1,10 +1,9 @@
 /* adaptive against its double twin step by step, against the float filter it grew from, and in theory. */
 #include "adaptive.h"
 #include "reference/adaptive.h"
-#include "support/laws.h"
+#include "support/law_tests.h"
 #include "support/random.h"
 #include "support/roll.h"
-#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -131,12 +130,11 @@ static bool compare_step(filter_t *f, reference_adaptive_t *r, int16_t z)
 /* Decisions that the bound leaves open are counted. */
 static void run_case(const case_t *c, int verdicts[5])
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, c->rate_dhz);
     config.value[ADAPTIVE_GUARD_SIGMA_Q8] = c->guard_q8;
     config.value[ADAPTIVE_IDENTIFY] = c->identify;
     config.value[ADAPTIVE_R_LSB2_Q8] = (int32_t)lrint(fmin(256000.0, c->sigma * c->sigma * 256.0));
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made(&filter_law_adaptive, &config);
     signal_t signal = { c->sigma, 0.0, c->outliers, 0, c->wild };
     for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
         (void)filter_update(&f, next_sample(&signal, k, 7000.0 / c->rate_dhz));
@@ -189,10 +187,9 @@ TEST(a_start_with_a_bad_read_is_that_of_the_reference)
 {
     int compared = 0;
     for (int start = 0; start < 2000; start++) {
-        filter_t f;
         filter_config_t config = filter_defaults(&filter_law_adaptive, 100);
         config.value[ADAPTIVE_GUARD_SIGMA_Q8] = (start % 2 == 0) ? config.value[ADAPTIVE_GUARD_SIGMA_Q8] : 0;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+        filter_t f = made(&filter_law_adaptive, &config);
         reference_adaptive_t r;
         for (int k = 0; k < 60; k++) {
             int16_t z = (k == start % 13) ? 4095 : (int16_t)lrint(200.0 + 5.0 * noise_of_one());
@@ -212,9 +209,8 @@ TEST(parameters_are_those_of_the_equations)
 {
     static const uint16_t rates_dhz[] = { 100, 250, 500, 1000, 4000, 8000 };
     for (int i = 0; i < 6; i++) {
-        filter_t f;
         filter_config_t config = filter_defaults(&filter_law_adaptive, rates_dhz[i]);
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+        filter_t f = made(&filter_law_adaptive, &config);
         double fast = fmin(0.6, 20000.0 / ((double)config.value[ADAPTIVE_FAST_MS] * rates_dhz[i]));
         double slow = 20000.0 / ((double)config.value[ADAPTIVE_SLOW_MS] * rates_dhz[i]);
         double share = 0.4 * fast;
@@ -305,8 +301,7 @@ TEST(the_scatter_settles_where_its_terms_say)
 
 static void assert_probed_variance(const filter_t *f, double r_lsb2)
 {
-    filter_probe_t probe;
-    filter_probe(f, &probe);
+    filter_probe_t probe = probe_of(f);
     double expected = r_lsb2 * reference_fading_noise_gain(f->own.adaptive.k_uq32 / 4294967296.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.002 * expected + 1.0 / 256.0, expected, probe.p_lsb2_q8 / 256.0);
 }
@@ -317,11 +312,10 @@ static void assert_probed_variance(const filter_t *f, double r_lsb2)
 TEST(variance_of_the_probe_is_the_closed_form)
 {
     for (int identify = 0; identify < 2; identify++) {
-        filter_t f;
         filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
         config.value[ADAPTIVE_IDENTIFY] = identify;
         config.value[ADAPTIVE_R_LSB2_Q8] = 100u * 256u;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+        filter_t f = made(&filter_law_adaptive, &config);
         for (int k = 0; k < 100; k++) {
             (void)filter_update(&f, (identify != 0) ? (int16_t)lrint(20.0 * noise_of_one()) : 0);
             if (k >= FILTER_WARM_UP_SAMPLES) {
@@ -343,8 +337,7 @@ static void both_mean_squares(roll_profile_t profile, bool identify, roll_window
     roll_windows_t sums[2] = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0 } };
     for (int run = 0; run < RUNS; run++) {
         reference_fading_t r = { 0.0, 0.0, 0.0, 0.0, 0 };
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+        filter_t f = made(&filter_law_adaptive, &config);
         for (int k = 0; k < ROLL_SAMPLES; k++) {
             double truth = roll_truth_deg(profile, 0.1 * k);
             int16_t z = roll_measured_lsb(&random_state, truth, 0.0);

@@ -3,9 +3,8 @@
  * degree): mean square errors and the scatter after a bad read, each against its bound.
  */
 #include "adaptive.h"
-#include "support/filters.h"
+#include "support/law_tests.h"
 #include "support/roll.h"
-#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -37,8 +36,7 @@ static roll_windows_t mean_square(const filter_config_t *config, roll_profile_t 
 {
     roll_windows_t sum = { 0.0, 0.0, 0.0 };
     for (int run = 0; run < RUNS; run++) {
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, config));
+        filter_t f = made(&filter_law_adaptive, config);
         for (int k = 0; k < ROLL_SAMPLES; k++) {
             double truth = roll_truth_deg(profile, 0.1 * k);
             double x = filter_update(&f, roll_measured_lsb(&random_state, truth, share)) / 65536.0 /
@@ -113,8 +111,7 @@ static void identified_with_bad_read(bool guarded, double sigma_lsb, int index, 
     double to_roll = sigma_lsb / (sqrt(ROLL_R_DEG2) * ROLL_LSB_PER_DEGREE);
     *mean = 0.0;
     for (int start = 0; start < STARTS; start++) {
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+        filter_t f = made(&filter_law_adaptive, &config);
         for (int k = 0; k < START_SAMPLES; k++) {
             double noise_lsb = to_roll * roll_measured_lsb(&random_state, 0.0, 0.0);
             (void)filter_update(&f, (int16_t)(k == index ? bad_lsb : lrint(LEVEL_LSB + noise_lsb)));

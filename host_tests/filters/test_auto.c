@@ -1,7 +1,6 @@
 /* auto: gate and restart of the members, the choice by the bounded scores, gaps. */
 #include "support/auto.h"
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 /* At rest without noise: four on end beyond every gate move nothing, the fifth restarts, and it stays there. */
 TEST(test_four_outliers_move_nothing_and_the_fifth_restarts)
@@ -45,10 +44,9 @@ TEST(test_the_slow_member_has_twice_the_gate)
 /* Without a gate all are used, up to the rails. */
 TEST(test_without_a_gate_nothing_is_refused)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_auto, 1000);
     config.value[AUTO_GATE_SIGMA_Q8] = 0;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_auto, &config));
+    filter_t f = made(&filter_law_auto, &config);
     filter_reset(&f, -4096);
     (void)filter_update(&f, 4095);
     TEST_ASSERT_EQUAL_HEX8(0, f.flags & FILTER_GATED);
@@ -122,8 +120,7 @@ TEST(test_the_middle_member_predicts_what_is_missing)
     }
     TEST_ASSERT_EQUAL_INT32(2 * 65536L + 2 * 32768L, coast(&f));
     TEST_ASSERT_EQUAL_HEX8(FILTER_COASTED, f.flags);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_INT32(2 * 65536L + 2 * 32768L, probe.x_lsb_q16);
     TEST_ASSERT_EQUAL_INT32(2 * 32768L, probe.rate_lsb_q16);
     for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {

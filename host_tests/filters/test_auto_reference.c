@@ -1,8 +1,7 @@
 /* auto: its members against the linear filter in double, what follows from its equations. */
 #include "support/auto.h"
-#include "support/laws.h"
+#include "support/law_tests.h"
 #include "support/random.h"
-#include "support/test.h"
 
 #include <math.h>
 
@@ -88,9 +87,7 @@ TEST(test_members_are_fading_memories)
 TEST(test_the_memory_grows_by_half_a_sample_per_sample)
 {
     filter_t f = made_at_rest(0);
-    for (int n = 0; n < 5; n++) {
-        (void)filter_update(&f, 1000);
-    }
+    feed(&f, 1000, 5);
     double k = 0.6;
     for (int n = 0; n < 200; n++) {
         for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
@@ -146,8 +143,7 @@ TEST(test_the_variance_reported_is_that_of_the_member_shown)
             step_line(&s, k, (n == 0) ? 1.0 : 0.0);
             sum += s.x * s.x;
         }
-        filter_probe_t probe;
-        filter_probe(&f, &probe);
+        filter_probe_t probe = probe_of(&f);
         TEST_ASSERT_DOUBLE_WITHIN(0.002 * sum * R_LSB2_Q8 + 1.0, sum * R_LSB2_Q8, probe.p_lsb2_q8);
     }
 }

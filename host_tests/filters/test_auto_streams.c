@@ -1,6 +1,6 @@
 /* auto on the tilt streams that it is made for, beside the filters that it is to beat. */
+#include "support/law_tests.h"
 #include "support/random.h"
-#include "support/test.h"
 #include "support/tilt_phases.h"
 
 #include <math.h>
@@ -46,8 +46,7 @@ TEST(test_streams_are_as_described)
 
 static filter_t begun(const filter_law_t *law, const filter_config_t *config)
 {
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, law, config));
+    filter_t f = made(law, config);
     return f;
 }
 
@@ -110,10 +109,9 @@ TEST(test_a_step_is_acquired_within_fifteen_samples)
     random_seed(&random, SEED);
     double sigma_lsb = TILT_SIGMA_DEG * TILT_LSB_PER_DEGREE;
     for (int run = 0; run < 200; run++) {
-        filter_t f;
         filter_config_t config = filter_defaults(&filter_law_auto, TILT_RATE_DHZ);
         config.value[AUTO_R_LSB2_Q8] = TILT_R_LSB2_Q8;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_auto, &config));
+        filter_t f = made(&filter_law_auto, &config);
         for (int n = 0; n < 200; n++) {
             (void)filter_update(&f, as_sample(sigma_lsb * random_normal(&random)));
         }

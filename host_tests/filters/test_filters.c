@@ -2,8 +2,7 @@
  * Generic properties, over the list of filters: what every filter of lib/filters promises, whatever its rule. Runs on
  * the PC and on the chip. Facts about single laws live in support_law_NAME.c.
  */
-#include "support/filters.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 #include <string.h>
 
@@ -34,8 +33,7 @@ static int16_t any_sample(void)
 
 static void assert_bounds(const filter_t *f, int32_t x_lsb_q16)
 {
-    filter_probe_t probe;
-    filter_probe(f, &probe);
+    filter_probe_t probe = probe_of(f);
     const char *broken = broken_bound(f, &probe, x_lsb_q16);
     if (broken != NULL) {
         TEST_FAIL_MESSAGE(broken);
@@ -275,8 +273,7 @@ TEST(reset_forgets_all_but_the_level)
             }
             int16_t level = (int16_t)(any_sample() / 8);
             filter_reset(&f, level);
-            filter_probe_t probe;
-            filter_probe(&f, &probe);
+            filter_probe_t probe = probe_of(&f);
             TEST_ASSERT_EQUAL_INT32((int32_t)level * 65536, probe.x_lsb_q16);
             TEST_ASSERT_EQUAL_INT32(0, probe.rate_lsb_q16);
             TEST_ASSERT_EQUAL_INT32(0, probe.innovation_lsb_q16);

@@ -1,8 +1,7 @@
 /* kf3 against Eigen: the double reference against DARE, paper 001 and the notes; fixed point against the reference. */
 #include "reference/kf3.h"
 #include "support/law_kf3.h"
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -99,8 +98,7 @@ TEST(paper_001_is_met_by_both_models)
 TEST(fixed_point_reaches_the_gain_of_paper_001)
 {
     filter_config_t config = { 500, { [KF3_R_LSB2_Q8] = 256, [KF3_Q_LSB2_S5] = 227042921 } }; /* 0.726537 x 50^5 */
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_kf3, &config));
+    filter_t f = made(&filter_law_kf3, &config);
     filter_reset(&f, 0);
     TEST_ASSERT_DOUBLE_WITHIN(0.001, 0.856, f.gain_uq16 / 65536.0);
 }
@@ -125,9 +123,7 @@ static void covariance_of(const filter_t *f, double *p)
 static void start_both(filter_t *f, reference_kf3_t *r, const filter_config_t *config)
 {
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_kf3, config));
-    for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)filter_update(f, 0);
-    }
+    feed(f, 0, FILTER_WARM_UP_SAMPLES);
     reference_kf3_library(r, config->rate_dhz / 10.0, config->value[KF3_R_LSB2_Q8] / 256.0,
                           config->value[KF3_Q_LSB2_S5], 0.0);
 }
@@ -328,8 +324,7 @@ TEST(probe_reports_the_variance)
     reference_kf3_step(&r, 30);
     double bound[9];
     covariance_bound(&r, bound);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_DOUBLE_WITHIN(1.0 + 256.0 * 16.0 * bound[0], r.p[0] * 256.0, probe.p_lsb2_q8);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, probe.gate_lsb2_q8);
     TEST_ASSERT_DOUBLE_WITHIN(0.02, r.innovation, probe.innovation_lsb_q16 / 65536.0);

@@ -1,8 +1,7 @@
 /* kf against Eigen: the double reference against numbers of paper 002, the fixed-point filter against the reference. */
 #include "reference/filters.h"
-#include "support/filters.h"
+#include "support/law_tests.h"
 #include "support/own_model.h"
-#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -74,9 +73,7 @@ TEST(reference_follows_the_golden_rows)
 static void start_both(filter_t *f, reference_filter_t *r, const filter_config_t *config)
 {
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_kf, config));
-    for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)filter_update(f, 0);
-    }
+    feed(f, 0, FILTER_WARM_UP_SAMPLES);
     reference_library(r, config->rate_dhz / 10.0, config->value[KF_R_LSB2_Q8] / 256.0, config->value[KF_Q_LSB2_S3], 0.0,
                       0, 0.0, 0.0);
 }
@@ -155,8 +152,7 @@ TEST(probe_reports_the_variance)
         (void)filter_update(&f, 10);
         reference_step(&r, 10);
     }
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_DOUBLE_WITHIN(1.0 + 256.0 * 16.0 * gain_bound(r.gain[0], f.own.kalman.q22_uq26), r.p[0] * 256.0,
                               probe.p_lsb2_q8);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, probe.gate_lsb2_q8);

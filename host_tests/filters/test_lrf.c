@@ -1,20 +1,11 @@
 /* lrf in integers, on the PC and on the chip; against the double reference: test_lrf_reference.c. */
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 #define SEED 4713UL
 
 static filter_config_t config_100hz(void)
 {
-    filter_config_t config = filter_defaults(&filter_law_lrf, 1000);
-    return config;
-}
-
-static filter_t made(const filter_config_t *config)
-{
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, config));
-    return f;
+    return filter_defaults(&filter_law_lrf, 1000);
 }
 
 /* (40) by hand: N^2 - q1 (N^2 - 1) = 400 - 0.85 x 399 = 60.85; 9 - 0.5 x 8 = 5; N = 1: 1. In 2^-16. */
@@ -28,7 +19,7 @@ TEST(mean_variance_is_that_of_the_formula)
         filter_config_t config = config_100hz();
         config.value[LRF_CLEAN_UQ16] = cases[i].clean_uq16;
         config.value[LRF_RATIO_UQ8] = cases[i].ratio_uq8;
-        filter_t f = made(&config);
+        filter_t f = made(&filter_law_lrf, &config);
         /* q1 = 0.85 is 55706 / 65536: 0.4 counts of 2^-16 too much, times 399 */
         TEST_ASSERT_UINT32_WITHIN(i == 0 ? 160 : 0, cases[i].factor_uq16, f.own.kalman.of.factor_uq16);
         uint32_t r_mixed = cases[i].factor_uq16 / 256U * (uint32_t)config.value[LRF_R_LSB2_Q8] / 256U;
@@ -40,7 +31,7 @@ TEST(with_ratio_1_it_is_the_kalman_filter)
 {
     filter_config_t config = config_100hz();
     config.value[LRF_RATIO_UQ8] = 256;
-    filter_t f = made(&config);
+    filter_t f = made(&filter_law_lrf, &config);
     filter_t k;
     TEST_ASSERT_TRUE(init_plain(&k, &config));
     uint32_t random = SEED;
@@ -62,7 +53,7 @@ TEST(it_is_the_kalman_filter_of_the_mean_variance)
     config.value[LRF_R_LSB2_Q8] = 3U * 256U;
     config.value[LRF_CLEAN_UQ16] = 32768;
     config.value[LRF_RATIO_UQ8] = 768;
-    filter_t f = made(&config);
+    filter_t f = made(&filter_law_lrf, &config);
     filter_t k;
     config.value[LRF_R_LSB2_Q8] = 15U * 256U;
     TEST_ASSERT_TRUE(init_plain(&k, &config));
@@ -80,7 +71,7 @@ TEST(mean_variance_ends_at_its_limit)
     config.value[LRF_CLEAN_UQ16] = 656;
     config.value[LRF_RATIO_UQ8] = 8192;
     config.value[LRF_R_LSB2_Q8] = FILTER_R_MAX_LSB2_Q8;
-    filter_t f = made(&config);
+    filter_t f = made(&filter_law_lrf, &config);
     TEST_ASSERT_EQUAL_UINT32(0xFFFFFF, f.own.kalman.r_lsb2_q8);
     filter_set_noise(&f, 64U * 256U);
     uint32_t r_mixed = 64UL * 256U * 1014U; /* 1024 - 0.01 x 1023 = 1013.76 */
@@ -94,9 +85,8 @@ TEST(probe_reports_the_mean_variance)
     config.value[LRF_R_LSB2_Q8] = 3U * 256U;
     config.value[LRF_CLEAN_UQ16] = 32768;
     config.value[LRF_RATIO_UQ8] = 768;
-    filter_t f = made(&config);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_t f = made(&filter_law_lrf, &config);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_UINT32(15U * 256U, probe.p_lsb2_q8);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, probe.gate_lsb2_q8);
 }

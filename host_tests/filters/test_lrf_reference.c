@@ -1,7 +1,6 @@
 /* lrf against Eigen: the reference against paper 002's numbers, the fixed-point filter against the reference. */
 #include "reference/filters.h"
-#include "support/filters.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -79,9 +78,7 @@ TEST(reference_follows_the_golden_rows)
 /* Steady gain w1 of a filter that reads zeros. */
 static double steady_gain(filter_t *f)
 {
-    for (int k = 0; k < 5000; k++) {
-        (void)filter_update(f, 0);
-    }
+    feed(f, 0, 5000);
     return f->gain_uq16 / 65536.0;
 }
 
@@ -96,8 +93,7 @@ TEST(steady_gains_are_those_of_the_paper)
     filter_config_t config = filter_defaults(&filter_law_lrf, 1000);
     config.value[LRF_R_LSB2_Q8] = 100 * 256;
     config.value[LRF_Q_LSB2_S3] = 8579;
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
+    filter_t f = made(&filter_law_lrf, &config);
     TEST_ASSERT_DOUBLE_WITHIN(0.005 * reference.gain[0], reference.gain[0], steady_gain(&f));
     config.value[LRF_RATIO_UQ8] = 256;
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
@@ -111,12 +107,9 @@ TEST(estimate_equals_the_reference)
     random_seed(&random, SEED);
     printf("seed %d\n", SEED);
     filter_config_t config = filter_defaults(&filter_law_lrf, 1000);
-    filter_t f;
     reference_filter_t r;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
-    for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)filter_update(&f, 0);
-    }
+    filter_t f = made(&filter_law_lrf, &config);
+    feed(&f, 0, FILTER_WARM_UP_SAMPLES);
     double sigma = sqrt(config.value[LRF_R_LSB2_Q8] / 256.0);
     reference_library(&r, 100.0, FACTOR * sigma * sigma, config.value[LRF_Q_LSB2_S3], 0.0, 0, 0.0, 0.0);
     for (int k = 0; k < 5000; k++) {
@@ -136,9 +129,8 @@ TEST(estimate_equals_the_reference)
  */
 TEST(smallest_gain_binds_where_the_header_says)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_lrf, 5100); /* 5.4 counts of 2^-26 */
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
+    filter_t f = made(&filter_law_lrf, &config);
     TEST_ASSERT_TRUE(f.own.kalman.q22_uq26 > 4U);
     config = filter_defaults(&filter_law_lrf, 5600);
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));

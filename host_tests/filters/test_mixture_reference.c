@@ -1,8 +1,7 @@
 /* The pieces of mixture.h against libm: posterior, log odds, and the distance of wide.h. */
 #include "mixture.h"
-#include "support/laws.h"
+#include "support/law_tests.h"
 #include "support/roles.h"
-#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -62,9 +61,8 @@ TEST(distance_is_the_squared_innovation_in_variances)
     double worst = 0.0;
     for (size_t i = 0; i < sizeof r_q8 / sizeof r_q8[0]; i++) {
         filter_config_t config = filter_defaults(&filter_law_pbf, 1000);
-        filter_t f;
         config.value[MIXTURE_R_LSB2_Q8] = r_q8[i];
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_pbf, &config));
+        filter_t f = made(&filter_law_pbf, &config);
         for (uint32_t p11 = 0; p11 < 0x7F000000U; p11 += p11 / 4U + 977U) {
             for (int16_t z = 1; z < 4095; z = (int16_t)(z + z / 7 + 1)) {
                 wide_from(&f, 0, 0, (filter_covariance_t){ p11, 0, 0 });

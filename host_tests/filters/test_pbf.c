@@ -1,17 +1,13 @@
 /* pbf in integers, on PC and chip: what an outlier moves, recovery. Against double: test_wide_reference.c. */
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 /* 100 Hz, R 16 LSB^2: sigma 4 LSB; settled at level. */
 static filter_t settled(int16_t level)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_pbf, 1000);
     config.value[MIXTURE_R_LSB2_Q8] = 16U * 256U;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_pbf, &config));
-    for (uint16_t k = 0; k < 300; k++) {
-        (void)filter_update(&f, level);
-    }
+    filter_t f = made(&filter_law_pbf, &config);
+    feed(&f, level, 300);
     return f;
 }
 
@@ -120,8 +116,7 @@ TEST(a_chain_fades_over_missing_samples)
 {
     filter_config_t config = filter_defaults(&filter_law_pbf, 1000);
     config.value[MIXTURE_STAY_UQ16] = 52429;
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_pbf, &config));
+    filter_t f = made(&filter_law_pbf, &config);
     filter_reset(&f, 0);
     (void)filter_update(&f, 4000);
     TEST_ASSERT_UINT32_WITHIN(3000, 3355443UL, f.own.mixture.normal_uq24); /* 0.2 */

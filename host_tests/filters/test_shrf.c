@@ -1,14 +1,12 @@
 /* shrf in integers, on the PC and on the chip: outliers unused, no lock-out. Against double: test_wide_reference.c. */
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 /* 100 Hz, settled at 0. */
 static filter_t settled(int32_t r_lsb2_q8)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_shrf, 1000);
     config.value[MIXTURE_R_LSB2_Q8] = r_lsb2_q8;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_shrf, &config));
+    filter_t f = made(&filter_law_shrf, &config);
     filter_reset(&f, 0);
     return f;
 }
@@ -45,9 +43,7 @@ TEST(every_step_is_followed)
     static const int16_t steps_lsb[] = { 4, 8, 20, 40, 80, 200, 400 };
     for (uint8_t i = 0; i < 7; i++) {
         filter_t f = settled(16U * 256U);
-        for (uint16_t k = 0; k < 1200; k++) {
-            (void)filter_update(&f, steps_lsb[i]);
-        }
+        feed(&f, steps_lsb[i], 1200);
         TEST_ASSERT_INT32_WITHIN(65536, (int32_t)steps_lsb[i] * 65536, f.x_lsb_q16);
     }
 }

@@ -2,8 +2,7 @@
  * soft in integers, on the PC and on the chip: within the soft gate, beyond it, beyond the gate. Against the double
  * reference: test_soft_reference.c.
  */
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 #define SEED 4712UL
 #define R_LSB2 16U
@@ -18,8 +17,7 @@ static filter_config_t config_100hz(void)
 
 static filter_t settled(const filter_config_t *config, int16_t level)
 {
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, config));
+    filter_t f = made(&filter_law_soft, config);
     filter_reset(&f, level);
     return f;
 }
@@ -33,9 +31,8 @@ static int32_t step_to(const filter_t *at_zero, int16_t z)
 
 static void assert_same_as_plain(const filter_config_t *config, int16_t mask)
 {
-    filter_t f;
     filter_t k;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, config));
+    filter_t f = made(&filter_law_soft, config);
     TEST_ASSERT_TRUE(init_plain(&k, config));
     uint32_t random = SEED;
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(5000, 1000); i++) {
@@ -74,9 +71,8 @@ TEST(no_sample_is_without_effect)
         }
         filter_t high = settled(&config, 4095); /* the largest innovation that rest allows */
         TEST_ASSERT_TRUE(step_to(&high, -4096) < (int32_t)4095 * 65536);
-        filter_probe_t probe;
         (void)filter_update(&high, -4096);
-        filter_probe(&high, &probe);
+        filter_probe_t probe = probe_of(&high);
         TEST_ASSERT_TRUE(probe.gain_uq16 > 0);
     }
 }
@@ -110,8 +106,7 @@ TEST(flag_is_at_the_gate_of_sprf)
         sprf_config.value[SPRF_R_LSB2_Q8] = config.value[SOFT_R_LSB2_Q8];
         sprf_config.value[SPRF_GATE_SIGMA_Q8] = config.value[SOFT_GATE_SIGMA_Q8];
         filter_t f = settled(&config, 0);
-        filter_t g;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&g, &filter_law_sprf, &sprf_config));
+        filter_t g = made(&filter_law_sprf, &sprf_config);
         filter_reset(&g, 0);
         for (int16_t z = 1; z < 200; z++) {
             filter_t soft = f;
@@ -236,9 +231,7 @@ TEST(least_gain_moves_by_a_count)
     config.value[SOFT_Q_LSB2_S3] = 1;
     config.value[SOFT_SOFT_SIGMA_Q8] = 256;
     filter_t f = settled(&config, 0);
-    for (uint16_t k = 0; k < 3000U; k++) {
-        (void)filter_update(&f, 0);
-    }
+    feed(&f, 0, 3000);
     TEST_ASSERT_EQUAL_INT32(1, filter_update(&f, 4095));
     TEST_ASSERT_EQUAL_INT32(0, filter_update(&f, -4095));
 }
@@ -255,7 +248,6 @@ TEST(run_with_a_gap_restarts_at_rest)
         (void)filter_update(&f, (int16_t)(1000 + 4 * k));
     }
     TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, f.flags);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_INT32(0, probe.rate_lsb_q16);
 }

@@ -1,7 +1,6 @@
 /* soft against Eigen and the normal law: steps, weights, recovery. */
 #include "reference/filters.h"
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -129,8 +128,7 @@ TEST(steps_beyond_the_soft_gate_equal_the_reference)
         config.value[SOFT_SOFT_SIGMA_Q8] = (uint16_t)(256U + random32_below(&random, 1024));
         config.value[SOFT_GATE_SIGMA_Q8] = 0;
         config.value[SOFT_RATE_MAX_LSB_S] = 1000000;
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, &config));
+        filter_t f = made(&filter_law_soft, &config);
         for (int k = 0; k < 40; k++) {
             int16_t z = (int16_t)random32_below(&random, 1U << random32_below(&random, 13));
             if (f.collected == FILTER_RUNNING) {
@@ -151,11 +149,8 @@ TEST(errors_equal_those_of_the_reference)
 {
     filter_config_t config = config_100hz();
     config.value[SOFT_GATE_SIGMA_Q8] = 0;
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, &config));
-    for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)filter_update(&f, 0);
-    }
+    filter_t f = made(&filter_law_soft, &config);
+    feed(&f, 0, FILTER_WARM_UP_SAMPLES);
     reference_filter_t r;
     reference_library(&r, 100.0, R_LSB2, config.value[SOFT_Q_LSB2_S3], 0.0, 0, 800.0, 0.0);
     r.soft2 = 4.0;
@@ -179,8 +174,7 @@ TEST(errors_equal_those_of_the_reference)
 /* Samples until the estimate stays within 4 sigma of the noise for 10 samples after a step; 2000 when it does not. */
 static int samples_to_recover(test_random_t *random, const filter_config_t *config, double step_lsb, double outliers)
 {
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, config));
+    filter_t f = made(&filter_law_soft, config);
     int good = 0;
     for (int k = -300; k < 2000; k++) {
         double level = k < 0 ? 0.0 : step_lsb;
@@ -214,8 +208,7 @@ TEST(every_step_is_reacquired_within_200_samples)
 TEST(false_alarms_are_those_of_the_normal_law)
 {
     filter_config_t config = config_100hz();
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, &config));
+    filter_t f = made(&filter_law_soft, &config);
     test_random_t random;
     random_seed(&random, SEED + 2);
     int flagged = 0;
@@ -238,8 +231,7 @@ TEST(without_reacquisition_it_returns_as_the_reference)
     config.value[SOFT_REACQUIRE_SAMPLES] = 0;
     config.value[SOFT_RATE_MAX_LSB_S] = 1000000;
     for (int i = 0; i < 4; i++) {
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, &config));
+        filter_t f = made(&filter_law_soft, &config);
         reference_filter_t r;
         reference_library(&r, 100.0, R_LSB2, config.value[SOFT_Q_LSB2_S3], 0.0, 0, 0.0, 0.0);
         r.soft2 = 4.0;

@@ -2,8 +2,7 @@
  * sprf in integers, on the PC and on the chip: gate, re-acquisition on raw samples. Against the double reference:
  * test_sprf_reference.c.
  */
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 #define SEED 4711UL
 #define R_LSB2 16U
@@ -19,11 +18,8 @@ static filter_config_t config_100hz(void)
 /* Settled at level: 300 equal samples. */
 static filter_t settled(const filter_config_t *config, int16_t level)
 {
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf, config));
-    for (int k = 0; k < 300; k++) {
-        (void)filter_update(&f, level);
-    }
+    filter_t f = made(&filter_law_sprf, config);
+    feed(&f, level, 300);
     return f;
 }
 
@@ -43,9 +39,8 @@ TEST(without_gate_it_is_the_kalman_filter)
     filter_config_t config = config_100hz();
     config.value[SPRF_GATE_SIGMA_Q8] = 0;
     config.value[SPRF_RATE_MAX_LSB_S] = 1000000;
-    filter_t f;
     filter_t k;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf, &config));
+    filter_t f = made(&filter_law_sprf, &config);
     TEST_ASSERT_TRUE(init_plain(&k, &config));
     uint32_t random = SEED;
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(5000, 1000); i++) {
@@ -141,9 +136,7 @@ TEST(reset_forgets_the_run)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 0);
-    for (int k = 0; k < 4; k++) {
-        (void)filter_update(&f, 1000);
-    }
+    feed(&f, 1000, 4);
     filter_reset(&f, 300);
     for (int k = 0; k < 4; k++) {
         TEST_ASSERT_EQUAL_INT32((int32_t)300 * 65536, filter_update(&f, 320));
@@ -200,8 +193,7 @@ static void expect_a_stand(int16_t direction)
     for (int16_t k = 1; k <= 400; k++) {
         (void)filter_update(&f, (int16_t)(k * 4 * direction));
     }
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     int32_t x = probe.x_lsb_q16;
     int32_t rate = probe.rate_lsb_q16;
     TEST_ASSERT_INT32_WITHIN(1024, (int32_t)4 * direction * 65536, rate);
@@ -227,8 +219,7 @@ TEST(without_reacquisition_it_runs_on)
     for (int16_t k = 1; k <= 400; k++) {
         (void)filter_update(&f, (int16_t)(k * 4));
     }
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     for (uint8_t k = 0; k < 20U; k++) {
         (void)filter_update(&f, (k & 1U) != 0U ? 4000 : -4000);
     }

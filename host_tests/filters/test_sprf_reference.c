@@ -1,8 +1,7 @@
 /* sprf against Eigen and the normal law: gate, no lock-out. */
 #include "reference/filters.h"
-#include "support/filters.h"
+#include "support/law_tests.h"
 #include "support/own_model.h"
-#include "support/test.h"
 #include "tracker.h"
 
 #include <math.h>
@@ -25,11 +24,8 @@ static filter_config_t config_100hz(void)
 /* Settled at level: 300 equal samples. */
 static filter_t settled(const filter_config_t *config, int16_t level)
 {
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf, config));
-    for (int k = 0; k < 300; k++) {
-        (void)filter_update(&f, level);
-    }
+    filter_t f = made(&filter_law_sprf, config);
+    feed(&f, level, 300);
     return f;
 }
 
@@ -96,8 +92,7 @@ TEST(gate_is_at_gate_sigmas_of_the_innovation)
         (void)filter_update(&outside, (int16_t)-ceil(limit * 1.005));
         TEST_ASSERT_EQUAL_UINT8(0, inside.flags);
         TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, outside.flags);
-        filter_probe_t probe;
-        filter_probe(&outside, &probe);
+        filter_probe_t probe = probe_of(&outside);
         TEST_ASSERT_EQUAL_UINT16(0, probe.gain_uq16);
         TEST_ASSERT_DOUBLE_WITHIN(0.01 * limit * limit, limit * limit, probe.gate_lsb2_q8 / 256.0);
     }
@@ -107,8 +102,7 @@ TEST(gate_is_at_gate_sigmas_of_the_innovation)
 static int samples_to_recover(test_random_t *random, double step_lsb, double outlier_probability)
 {
     filter_config_t config = config_100hz();
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf, &config));
+    filter_t f = made(&filter_law_sprf, &config);
     int good = 0;
     for (int k = -300; k < 1000; k++) {
         double level = k < 0 ? 0.0 : step_lsb;
@@ -141,8 +135,7 @@ TEST(every_step_is_reacquired_within_200_samples)
 TEST(false_alarms_are_those_of_the_normal_law)
 {
     filter_config_t config = config_100hz();
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf, &config));
+    filter_t f = made(&filter_law_sprf, &config);
     test_random_t random;
     random_seed(&random, SEED + 2);
     int refused = 0;
@@ -185,8 +178,7 @@ static void behind_a_turn_it_runs_on_by_eight_degrees_at_most(const filter_law_t
     for (int run = 0; run < 30; run++) {
         filter_config_t config = filter_defaults(law, 250);
         config.value[SPRF_R_LSB2_Q8] = 384; /* 1.5 LSB^2, what the noise estimate says of it */
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, law, &config));
+        filter_t f = made(law, &config);
         for (int k = -100; k < 75; k++) {
             const double turn_deg = fmin(fmax(-45.0 + 3.6 * k, -45.0), 45.0);
             const int16_t z = as_sample(265.0 * sin(turn_deg * pi / 180.0) + 0.7 * random_normal(&random));

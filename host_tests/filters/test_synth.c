@@ -1,6 +1,5 @@
 /* synth: its start, its two-product form and its presets on integers; runs on the PC and on the chip. */
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 static void make(filter_t *f, int32_t a1_q16, int32_t b0_uq16)
 {
@@ -85,9 +84,8 @@ TEST(start_on_a_ramp_catches_up)
 
 static uint16_t gain_of_next_sample(filter_t *f)
 {
-    filter_probe_t probe;
     (void)filter_update(f, 7);
-    filter_probe(f, &probe);
+    filter_probe_t probe = probe_of(f);
     return probe.gain_uq16;
 }
 
@@ -111,9 +109,7 @@ TEST(start_ends_at_the_first_gain_that_is_not_above)
 {
     filter_t f;
     make(&f, 0, 19661);
-    for (uint8_t n = 1; n <= 10; n++) {
-        (void)filter_update(&f, 7);
-    }
+    feed(&f, 7, 10);
     TEST_ASSERT_EQUAL_UINT16(20852, gain_of_next_sample(&f));
     TEST_ASSERT_EQUAL_UINT16(19661, gain_of_next_sample(&f));
 }
@@ -144,10 +140,9 @@ TEST(one_sample_turns_the_rate_up_to_its_limit)
 {
     for (int16_t sign = -1; sign <= 1; sign = (int16_t)(sign + 2)) {
         for (int16_t z_lsb = 14; z_lsb <= 18; z_lsb = (int16_t)(z_lsb + 2)) {
-            filter_t f;
             filter_config_t config = filter_defaults(&filter_law_synth, 1000);
             config.value[SYNTH_B0_UQ16] = 32768;
-            TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth, &config));
+            filter_t f = made(&filter_law_synth, &config);
             filter_reset(&f, 0);
             TEST_ASSERT_EQUAL_INT32(sign * z_lsb * 32768L, filter_update(&f, (int16_t)(sign * z_lsb)));
             TEST_ASSERT_EQUAL_UINT8(z_lsb > 16 ? FILTER_SATURATED : 0, f.flags);
@@ -160,11 +155,10 @@ TEST(one_sample_turns_the_rate_up_to_its_limit)
 /* a1 = -1/2, b0 = 1/2: 100 after rest at 0 gives 50 and a rate of 8; bent, x_e would go on by 12, then by 10. */
 TEST(bent_predictions_are_limited_too)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_synth, 1000);
     config.value[SYNTH_A1_Q16] = -32768;
     config.value[SYNTH_B0_UQ16] = 32768;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth, &config));
+    filter_t f = made(&filter_law_synth, &config);
     filter_reset(&f, 0);
     TEST_ASSERT_EQUAL_INT32(50L * 65536, filter_update(&f, 100));
     TEST_ASSERT_EQUAL_INT32(62L * 65536, coast(&f));
@@ -215,8 +209,7 @@ TEST(coast_goes_on_along_the_line)
     (void)coast(&f);
     TEST_ASSERT_INT32_WITHIN(655, 2L * 202 * 65536, coast(&f));
     TEST_ASSERT_EQUAL_UINT8(FILTER_COASTED, f.flags);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_INT32(0, probe.innovation_lsb_q16);
     TEST_ASSERT_EQUAL_UINT16(0, probe.gain_uq16);
     TEST_ASSERT_INT32_WITHIN(655, 2L * 65536, probe.rate_lsb_q16);
@@ -246,13 +239,10 @@ TEST(coast_in_the_start_does_not_count)
 {
     filter_t f;
     make(&f, 0, 19661);
-    for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)filter_update(&f, 7);
-    }
+    feed(&f, 7, FILTER_WARM_UP_SAMPLES);
     (void)coast(&f);
     (void)filter_update(&f, 7);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_UINT16(34328, probe.gain_uq16);
 }
 
@@ -270,11 +260,10 @@ TEST(coast_before_any_sample_is_zero)
  */
 TEST(probe_reports_the_variance)
 {
-    filter_probe_t probe;
     filter_t f;
     make(&f, 0, 19661);
     (void)filter_update(&f, 5);
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_UINT32(768, probe.p_lsb2_q8);
     TEST_ASSERT_EQUAL_INT32(5L * 65536, probe.x_lsb_q16);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, probe.gate_lsb2_q8);
@@ -308,10 +297,9 @@ TEST(overshoot_beyond_the_format_is_flagged)
 /* With an extrapolation that sees the curvature, which a damp must not make. */
 TEST(damp_bends_nothing)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_synth, 1000);
     config.value[SYNTH_A1_Q16] = -19661; /* -0.3 */
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth, &config));
+    filter_t f = made(&filter_law_synth, &config);
     filter_reset(&f, 0);
     for (int16_t k = 1; k <= 400; k++) {
         (void)filter_update(&f, (int16_t)(k * 3));

@@ -1,6 +1,5 @@
 /* synth_opt: its schedule, classes and start on integers; runs on the PC and on the chip. */
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 static void make(filter_t *f, int32_t variant_u, int32_t p0_lsb2_q8, int32_t r_lsb2_q8)
 {
@@ -14,16 +13,13 @@ static void make(filter_t *f, int32_t variant_u, int32_t p0_lsb2_q8, int32_t r_l
 
 static void warm_up(filter_t *f, int16_t z_lsb)
 {
-    for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)filter_update(f, z_lsb);
-    }
+    feed(f, z_lsb, FILTER_WARM_UP_SAMPLES);
 }
 
 static uint16_t gain_of_next_sample(filter_t *f)
 {
-    filter_probe_t probe;
     (void)filter_update(f, 7);
-    filter_probe(f, &probe);
+    filter_probe_t probe = probe_of(f);
     return probe.gain_uq16;
 }
 
@@ -55,9 +51,7 @@ TEST(schedule_of_u_by_hand)
     make(&f, 1, 25600, 1600);
     warm_up(&f, 7);
     TEST_ASSERT_EQUAL_UINT16(64912, gain_of_next_sample(&f));
-    for (uint8_t k = 1; k < 12; k++) {
-        (void)filter_update(&f, 7);
-    }
+    feed(&f, 7, 11);
     TEST_ASSERT_EQUAL_UINT16(55454, gain_of_next_sample(&f));
 }
 
@@ -166,11 +160,10 @@ TEST(schedule_goes_by_samples_seen)
 /* A sample's variance while warming up, R b0 in the schedule (16/17 R), 2/3 R behind it, and of U 0.8059 R. */
 TEST(probe_reports_the_variance)
 {
-    filter_probe_t probe;
     filter_t f;
     make(&f, 0, 409600, 25600);
     warm_up(&f, 7);
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_UINT32(25600, probe.p_lsb2_q8);
     (void)filter_update(&f, 7);
     filter_probe(&f, &probe);
@@ -205,9 +198,7 @@ TEST(default_p0_is_that_of_the_median)
 TEST(one_sample_turns_the_rate_up_to_its_limit)
 {
     for (uint8_t k = 0; k < 2; k++) {
-        filter_t f;
-        filter_config_t config = filter_defaults(&filter_law_synth_opt, 1000);
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_opt, &config));
+        filter_t f = made_default(&filter_law_synth_opt, 1000);
         filter_reset(&f, 0);
         int32_t x = filter_update(&f, (k == 0U) ? 9 : 15);
         TEST_ASSERT_EQUAL_UINT8((k == 0U) ? 0 : FILTER_SATURATED, f.flags);

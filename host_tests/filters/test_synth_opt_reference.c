@@ -1,7 +1,6 @@
 /* synth_opt against its double reference, and the reference against the values and limits of the notes. */
 #include "reference/synth_opt.h"
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 #include "synth.h"
 
 #include <math.h>
@@ -131,9 +130,8 @@ static void assert_step(filter_t *f, const reference_gains_t *expected)
     bent.own.synth.rate_before_lsb_q16 = 0;
     double extrapolated = coast(&bent) / 65536.0;
     TEST_ASSERT_DOUBLE_WITHIN(1000.0 / 131072.0 + 1e-4, 2000.0 - 1000.0 * expected->a1, extrapolated);
-    filter_probe_t probe;
     (void)filter_update(f, 10);
-    filter_probe(f, &probe);
+    filter_probe_t probe = probe_of(f);
     TEST_ASSERT_DOUBLE_WITHIN(0.6, fmin(expected->b0 * 65536.0, 65535.0), probe.gain_uq16);
 }
 
@@ -144,9 +142,7 @@ TEST(table_is_the_schedule_of_the_reference)
             filter_t f;
             double ratio = pow(4.0, i);
             make(&f, u != 0, ratio);
-            for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-                (void)filter_update(&f, 10);
-            }
+            feed(&f, 10, FILTER_WARM_UP_SAMPLES);
             for (int step = 0; step < STEPS + 5; step++) {
                 reference_gains_t expected = expected_gains(u != 0, ratio, step);
                 assert_step(&f, &expected);
@@ -172,13 +168,10 @@ TEST(nearest_class_costs_little)
         TEST_ASSERT_TRUE(ratio > 99999.0 || (filter_init(&f, &filter_law_synth_opt, &config) == FILTER_ACCEPTED));
         equal_errors(best, ratio);
         equal_errors(own, ratio);
-        for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-            (void)filter_update(&f, 10);
-        }
+        feed(&f, 10, FILTER_WARM_UP_SAMPLES);
         for (int step = 0; step < 16; step++) {
-            filter_probe_t probe;
             (void)filter_update(&f, 10);
-            filter_probe(&f, &probe);
+            filter_probe_t probe = probe_of(&f);
             double optimum = reference_opt_exact_step(best).p;
             double variance = reference_given_step(own, 0.0, probe.gain_uq16 / 65536.0);
             worst = fmax(worst, variance / optimum);
@@ -362,7 +355,6 @@ TEST(probe_reports_the_true_variance)
     random_seed(&random, SEED + 5);
     for (int u = 0; u <= 1; u++) {
         filter_t f;
-        filter_probe_t probe;
         make(&f, u != 0, 4.0);
         filter_set_noise(&f, 25600);
         filter_reset(&f, 0);
@@ -371,7 +363,7 @@ TEST(probe_reports_the_true_variance)
             double x = filter_update(&f, as_sample(10.0 * random_normal(&random))) / 65536.0;
             squares += x * x / 200000.0;
         }
-        filter_probe(&f, &probe);
+        filter_probe_t probe = probe_of(&f);
         TEST_ASSERT_DOUBLE_WITHIN(0.02 * squares, squares, probe.p_lsb2_q8 / 256.0);
     }
 }

@@ -1,6 +1,5 @@
 /* synth_plus: its taps, its region and its start on integers; runs on the PC and on the chip. */
-#include "support/laws.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 static filter_config_t with(uint16_t k, uint16_t b0_uq16, int32_t b1_q16, int32_t b2_q16)
 {
@@ -39,8 +38,7 @@ TEST(answers_are_those_of_the_equation)
         TEST_ASSERT_EQUAL_INT32(expected_lsb_q4[i] * 4096, x);
     }
     TEST_ASSERT_EQUAL_UINT8(FILTER_COASTED, f.flags);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_INT32(0, probe.innovation_lsb_q16);
     TEST_ASSERT_EQUAL_UINT16(0, probe.gain_uq16);
 }
@@ -116,13 +114,12 @@ TEST(reset_forgets_the_innovations)
 TEST(without_memory_it_is_synth)
 {
     filter_t f;
-    filter_t plain;
     filter_config_t config;
     uint32_t random = 4711;
     make(&f, 0, 19661, 0, 0);
     config = filter_defaults(&filter_law_synth, 1000);
     config.value[SYNTH_RATE_MAX_LSB_S] = RATE_UNLIMITED_LSB_S;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&plain, &filter_law_synth, &config));
+    filter_t plain = made(&filter_law_synth, &config);
     filter_reset(&plain, 0);
     for (uint16_t k = 0; k < 300; k++) {
         int16_t z = (int16_t)random32_below(&random, 1000);
@@ -137,9 +134,7 @@ TEST(without_memory_it_is_synth)
  */
 TEST(start_on_a_ramp_finds_its_slope)
 {
-    filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_synth_plus, 1000);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
+    filter_t f = made_default(&filter_law_synth_plus, 1000);
     for (int16_t n = 1; n <= 200; n++) {
         int32_t off = filter_update(&f, (int16_t)(3 * n)) - (int32_t)3 * n * 65536;
         if (n == FILTER_WARM_UP_SAMPLES + 1) {
@@ -154,19 +149,14 @@ TEST(start_on_a_ramp_finds_its_slope)
 TEST(start_ends_with_sample_31)
 {
     filter_config_t config = with(0, 2000, -1900, 0);
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
-    for (uint8_t n = 1; n <= 31; n++) {
-        (void)filter_update(&f, 7);
-    }
+    filter_t f = made(&filter_law_synth_plus, &config);
+    feed(&f, 7, 31);
     TEST_ASSERT_EQUAL_UINT16(8060, f.gain_uq16); /* 122 / 992 */
     (void)filter_update(&f, 7);
     TEST_ASSERT_EQUAL_UINT16(2000, f.gain_uq16);
     config = with(0, 32768, -16384, 0);
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
-    for (uint8_t n = 1; n <= 6; n++) {
-        (void)filter_update(&f, 7);
-    }
+    feed(&f, 7, 6);
     TEST_ASSERT_EQUAL_UINT16(34328, f.gain_uq16); /* 22 / 42 */
     (void)filter_update(&f, 7);
     TEST_ASSERT_EQUAL_UINT16(32768, f.gain_uq16);
@@ -175,9 +165,7 @@ TEST(start_ends_with_sample_31)
 /* An outlier among the first five changes nothing: the start is their median. */
 TEST(outlier_in_the_start_costs_nothing)
 {
-    filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_synth_plus, 1000);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
+    filter_t f = made_default(&filter_law_synth_plus, 1000);
     for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
         (void)filter_update(&f, (k == 4) ? 4000 : 0);
     }
@@ -188,12 +176,10 @@ TEST(outlier_in_the_start_costs_nothing)
 /* R = 3 LSB^2: alpha-beta of 1/2 and 1/4 has (1/2 + 1/8) / (1/2 x 2.75) = 5/11. A sample's in the start. */
 TEST(probe_reports_the_variance)
 {
-    filter_probe_t probe;
-    filter_t f;
     filter_config_t config = with(0, 32768, -16384, 0);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
+    filter_t f = made(&filter_law_synth_plus, &config);
     (void)filter_update(&f, 5);
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_UINT32(768, probe.p_lsb2_q8);
     filter_reset(&f, 5);
     filter_probe(&f, &probe);

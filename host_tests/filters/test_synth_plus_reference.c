@@ -1,7 +1,6 @@
 /* synth_plus against its double reference, and the reference against what the filter is said to contain. */
 #include "reference/synth_plus.h"
-#include "support/filters.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 #include "synth.h"
 
 #include <math.h>
@@ -197,8 +196,7 @@ TEST(estimate_equals_the_reference)
         reference_taps_t taps = taps_of(&config);
         double bound = reference_plus_rounding_lsb(&taps, filters[i].roundings);
         reference_plus_t r = { { 0.0 }, { 0.0 } };
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
+        filter_t f = made(&filter_law_synth_plus, &config);
         filter_reset(&f, 0);
         for (int k = 0; k < 20000; k++) {
             int16_t z = as_sample(wave(k, &random));
@@ -219,13 +217,12 @@ TEST(start_is_the_least_squares_line)
     random_seed(&random, SEED + 3);
     for (int run = 0; run < 50; run++) {
         filter_config_t config;
-        filter_t f;
         double z[31];
         config = filter_defaults(&filter_law_synth_plus, 1000);
         config.value[SYNTH_PLUS_B0_UQ16] = 3277;
         config.value[SYNTH_PLUS_B1_Q16] = -3194;
         config.value[SYNTH_PLUS_K] = 2;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
+        filter_t f = made(&filter_law_synth_plus, &config);
         for (int k = 0; k < 31; k++) {
             int16_t sample = as_sample(100.0 + 5.0 * k + 2.0 * random_normal(&random));
             z[k] = sample;

@@ -1,10 +1,8 @@
 /* sprf_paper, shrf, pbf and af against the matrices of paper 002 in double: steady gains, single steps, whole runs. */
 #include "reference/robust.h"
-#include "support/filters.h"
-#include "support/laws.h"
+#include "support/law_tests.h"
 #include "support/random.h"
 #include "support/roles.h"
-#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -85,9 +83,7 @@ TEST(steady_gains_are_kalmans)
         filter_config_t config = filter_defaults(pairs[0].law, rates[i % 9]);
         config.value[KALMAN_R] = (int32_t)lrint(256.0 * r_lsb2[i / 9]);
         TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, pairs[0].law, &config));
-        for (int k = 0; k < 6000; k++) {
-            (void)filter_update(&f, 100);
-        }
+        feed(&f, 100, 6000);
         robust_reference_t r;
         double p[4];
         double gain[2];
@@ -220,9 +216,7 @@ TEST(the_chain_goes_on_over_missing_samples)
             filter_t f;
             robust_reference_t r;
             make_chain(&pairs[i], &f, &r, stay);
-            for (int k = 0; k < 50; k++) {
-                (void)filter_update(&f, 0);
-            }
+            feed(&f, 0, 50);
             (void)filter_update(&f, 400);
             double normal = f.own.mixture.normal_uq24 / 16777216.0;
             TEST_ASSERT_DOUBLE_WITHIN(0.001, 1.0 - stay, normal);
