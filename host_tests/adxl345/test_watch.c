@@ -7,7 +7,6 @@
 #include "support/shipped.h"
 #include "support/test.h"
 
-#include <stdio.h>
 #include <string.h>
 
 enum { SENSOR_AT_REST_LSB = 248, END_SAMPLES = LIMIT_JUMPS_END };

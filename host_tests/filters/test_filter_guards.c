@@ -1,7 +1,6 @@
 /*
  * Guards that ordinary samples hardly reach: the borrow of P22, the hysteresis of R's estimate, the range of a sample.
  */
-#include <stdlib.h>
 
 #include "kalman.h"
 #include "noise.h"

@@ -5,35 +5,14 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #define SEED 31
-#define GOLDEN "../shared/reference/golden_mls.csv"
-
-/* Table 1 of paper 002: T 0.0247, R 0.0064, Q on the rate 0.0009, start (2.8, 0.008) with P diag(0.7, 0.04). */
-static reference_filter_t table_1(void)
-{
-    reference_filter_t f = { .period_s = 0.0247,
-                             .r = 0.0064,
-                             .r_gain = 0.0064,
-                             .q = { 0, 0, 0, 0.0009 },
-                             .x = { 2.8, 0.008 },
-                             .p = { 0.7, 0, 0, 0.04 } };
-    return f;
-}
-
-static void settle(reference_filter_t *f)
-{
-    for (int k = 0; k < 5000; k++) {
-        reference_step(f, 0.0);
-    }
-}
 
 /* robust-filters: steady posterior and gain of the Kalman filter; the linear robust filter's: test_lrf_reference.c. */
 TEST(reference_settles_where_the_paper_does)
 {
-    reference_filter_t kf = table_1();
-    settle(&kf);
+    reference_filter_t kf = reference_table_1(1.0);
+    reference_settle(&kf);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6 * 8.1e-4, 8.14695564e-4, kf.p[0]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6 * 2.2e-3, 2.24204683e-3, kf.p[1]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6 * 1.3e-2, 1.32402513e-2, kf.p[3]);
@@ -41,32 +20,6 @@ TEST(reference_settles_where_the_paper_does)
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 0.3503, 0.35032, kf.gain[1]);
     const double r_mixed = 60.85 * 0.0064; /* 85 % R, 15 % 400 R */
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 3.819e-2, 3.819e-2, reference_lyapunov(&kf, r_mixed));
-}
-
-TEST(reference_follows_the_golden_rows)
-{
-    FILE *file = fopen(GOLDEN, "r");
-    if (file == NULL) {
-        TEST_IGNORE_MESSAGE(GOLDEN " is not there");
-    }
-    char line[2000];
-    reference_filter_t f = table_1();
-    int rows = 0;
-    while (fgets(line, sizeof line, file) != NULL) {
-        double y;
-        double x1;
-        double x2;
-        double p11;
-        if (sscanf(line, "%*d,%lf,%*f,%*d,%lf,%lf,%lf", &y, &x1, &x2, &p11) == 4) {
-            reference_step(&f, y);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, x1, f.x[0]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, x2, f.x[1]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, p11, f.p[0]);
-            rows++;
-        }
-    }
-    fclose(file);
-    TEST_ASSERT_EQUAL_INT(200, rows);
 }
 
 /* A filter that has taken five zeros, and its reference from the same start. */

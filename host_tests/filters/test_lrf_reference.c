@@ -4,39 +4,17 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define SEED 32
-#define GOLDEN "../shared/reference/golden_mls.csv"
 #define FACTOR 60.85 /* q1 (1 - N^2) + N^2 at q1 = 0.85, N = 20 */
-
-/* Table 1 of paper 002. */
-static reference_filter_t table_1(double factor)
-{
-    reference_filter_t f = { .period_s = 0.0247,
-                             .r = 0.0064,
-                             .r_gain = factor * 0.0064,
-                             .q = { 0, 0, 0, 0.0009 },
-                             .x = { 2.8, 0.008 },
-                             .p = { 0.7, 0, 0, 0.04 } };
-    return f;
-}
-
-static void settle(reference_filter_t *f)
-{
-    for (int k = 0; k < 5000; k++) {
-        reference_step(f, 0.0);
-    }
-}
 
 /* 2.06 with outliers, 0.1715 without (by Lyapunov, notes section 3), to 1e-3 of what their four-digit parts give. */
 TEST(variance_ratios_are_those_of_the_notes)
 {
-    reference_filter_t plain = table_1(1.0);
-    reference_filter_t lrf = table_1(FACTOR);
-    settle(&plain);
-    settle(&lrf);
+    reference_filter_t plain = reference_table_1(1.0);
+    reference_filter_t lrf = reference_table_1(FACTOR);
+    reference_settle(&plain);
+    reference_settle(&lrf);
     const double outliers = reference_lyapunov(&plain, FACTOR * 0.0064) / reference_lyapunov(&lrf, FACTOR * 0.0064);
     TEST_ASSERT_DOUBLE_WITHIN(2e-3 * 0.0476, 0.0476, lrf.gain[0]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 1.852e-2, 1.852e-2, reference_lyapunov(&lrf, FACTOR * 0.0064));
@@ -46,33 +24,6 @@ TEST(variance_ratios_are_those_of_the_notes)
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 2.06, 3.819 / 1.852, outliers);
     TEST_ASSERT_DOUBLE_WITHIN(0.005, 2.06, outliers);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 0.1715, 0.1715, clean);
-}
-
-/* Columns k, y, true, outlier, four of KF, then four of LRF. */
-TEST(reference_follows_the_golden_rows)
-{
-    FILE *file = fopen(GOLDEN, "r");
-    if (file == NULL) {
-        TEST_IGNORE_MESSAGE(GOLDEN " is not there");
-    }
-    char line[2000];
-    reference_filter_t f = table_1(FACTOR);
-    int rows = 0;
-    while (fgets(line, sizeof line, file) != NULL) {
-        double y;
-        double x1;
-        double x2;
-        double p11;
-        if (sscanf(line, "%*d,%lf,%*f,%*d,%*f,%*f,%*f,%*f,%lf,%lf,%lf", &y, &x1, &x2, &p11) == 4) {
-            reference_step(&f, y);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, x1, f.x[0]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, x2, f.x[1]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, p11, f.p[0]);
-            rows++;
-        }
-    }
-    fclose(file);
-    TEST_ASSERT_EQUAL_INT(200, rows);
 }
 
 /* Steady gain w1 of a filter that reads zeros. */
@@ -88,8 +39,8 @@ static double steady_gain(filter_t *f)
  */
 TEST(steady_gains_are_those_of_the_paper)
 {
-    reference_filter_t reference = table_1(FACTOR);
-    settle(&reference);
+    reference_filter_t reference = reference_table_1(FACTOR);
+    reference_settle(&reference);
     filter_config_t config = filter_defaults(&filter_law_lrf, 1000);
     config.value[LRF_R_LSB2_Q8] = 100 * 256;
     config.value[LRF_Q_LSB2_S3] = 8579;

@@ -1,4 +1,5 @@
 /* The double references of paper 002 against the golden rows, exact covariances and each other. */
+#include "reference/filters.h"
 #include "reference/robust.h"
 #include "support/test.h"
 
@@ -25,6 +26,22 @@ static robust_reference_t golden_filter(int column)
     return f;
 }
 
+/* Those of them that reference/filters.h has too: KF, LRF, SpRF+, soft+. */
+static const int in_filters[] = { 0, 1, 7, 8 };
+enum { IN_FILTERS = sizeof in_filters / sizeof in_filters[0] };
+
+static reference_filter_t golden_reference(int column)
+{
+    reference_filter_t f = reference_table_1(column == 1 ? 60.85 : 1.0);
+    if (column >= 7) {
+        f.gate2 = 9.0;
+        f.reacquire = 5;
+        f.agree = 0.37;
+    }
+    f.soft2 = (column == 8) ? 4.0 : 0.0;
+    return f;
+}
+
 static double auxiliary(const robust_reference_t *f, int column)
 {
     if (column >= 6) {
@@ -48,6 +65,21 @@ static void compare(robust_reference_t *filters, const double *cells)
     }
 }
 
+static void compare_reference(reference_filter_t *references, const double *cells)
+{
+    for (int i = 0; i < IN_FILTERS; i++) {
+        const double *wanted = cells + FIRST_COLUMN + 4 * in_filters[i];
+        reference_filter_t *f = &references[i];
+        reference_step(f, cells[1]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-10, wanted[0], f->x[0]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-10, wanted[1], f->x[1]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-10, wanted[2], f->p[0]);
+        if (in_filters[i] >= 7) {
+            TEST_ASSERT_EQUAL_INT((int)wanted[3], f->reacquired ? 2 : (f->gated ? 1 : 0));
+        }
+    }
+}
+
 TEST(golden_rows_are_reproduced)
 {
     FILE *file = fopen(GOLDEN, "r");
@@ -57,6 +89,10 @@ TEST(golden_rows_are_reproduced)
     robust_reference_t filters[GOLDEN_FILTERS];
     for (int i = 0; i < GOLDEN_FILTERS; i++) {
         filters[i] = golden_filter(i);
+    }
+    reference_filter_t references[IN_FILTERS];
+    for (int i = 0; i < IN_FILTERS; i++) {
+        references[i] = golden_reference(in_filters[i]);
     }
     char line[2000];
     int rows = 0;
@@ -68,6 +104,7 @@ TEST(golden_rows_are_reproduced)
         }
         if (n == 40 && line[0] != '#') {
             compare(filters, cells);
+            compare_reference(references, cells);
             rows++;
         }
     }

@@ -1,6 +1,5 @@
 /* The whole firmware on the host's HAL: protocol, commands, faults, watchdog stages, baud and rate changes. */
 #include <stdio.h>
-#include <string.h>
 
 #include "app/app.h"
 #include "base/hang_test.h"

@@ -3,7 +3,6 @@
  * was asked for comes about. The sensor is looked for at both addresses, whoever else answers.
  */
 #include <stdio.h>
-#include <string.h>
 
 #include "adxl345.h"
 #include "adxl345_registers.h"

@@ -3,8 +3,6 @@
  * counted.
  */
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "app/app.h"
 #include "base/counters.h"

@@ -1,5 +1,4 @@
 /* The whole firmware while its line changes: what waits is kept, and replies never cost a row. */
-#include <stdio.h>
 
 #include "base/counters.h"
 #include "settings/settings.h"

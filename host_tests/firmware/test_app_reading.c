@@ -1,5 +1,4 @@
 /* What makes the console one for a person: rows wait while he reads, and the answers say what he needs next. */
-#include <string.h>
 
 #include "app/app.h"
 #include "base/counters.h"

@@ -1,6 +1,5 @@
 /* What a sample's period leaves: filters and rates that do not go together are refused, rows are thinned. */
 #include <stdio.h>
-#include <string.h>
 
 #include "base/hang_test.h"
 #include "filter_list.h"

@@ -1,5 +1,4 @@
 /* What `status` says, judged by what was done to the bus and the sensor and by what the sensor did. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

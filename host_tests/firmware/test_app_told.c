@@ -1,7 +1,6 @@
 /* What the user is told of a fault: its words and the LED. The numbers: test_app_outage.c. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "adxl345.h"

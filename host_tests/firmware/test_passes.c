@@ -2,8 +2,6 @@
  * A main loop that is out of time after each piece of work does the same as one that has time for all: a sample, a row,
  * a reply, an axis of a change of filter a pass, each pass followed at once by the next.
  */
-#include <stdlib.h>
-#include <string.h>
 
 #include "support/board.h"
 #include "support/test.h"

@@ -3,7 +3,6 @@
 
 #include "base/format.h"
 #include <stdio.h>
-#include <string.h>
 
 #include "hal_host.h"
 #include "hal_sleep.h"

@@ -3,7 +3,6 @@
  * pipeline alone, then the whole firmware on the host's HAL.
  */
 #include <math.h>
-#include <stdlib.h>
 
 #include "app/app.h"
 #include "base/counters.h"

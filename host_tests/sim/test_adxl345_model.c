@@ -1,6 +1,5 @@
 /* The virtual ADXL345 against the data sheet, Rev. E; pages in the comments. */
 #include <stddef.h>
-#include <string.h>
 
 #include "support/sensor_bus.h"
 #include "support/test.h"

@@ -8,7 +8,6 @@
 #include "tilt_filter.h"
 
 #include <stdio.h>
-#include <string.h>
 
 static tilt_filter_t tilt;
 static char text[200];

@@ -10,7 +10,6 @@
 #include "tilt_filter.h"
 
 #include <stdio.h>
-#include <string.h>
 
 /* Flags that are not of the sample path: of the driver and the bus, of the rows, of the supervisor of `auto`. */
 #define OF_THE_BOARD (ROW_FAULT | ROW_STUCK | ROW_INTEGRITY | ROW_DROPPED | ROW_LEFT_OUT)

@@ -3,7 +3,6 @@
 #include "support/test.h"
 
 #include <math.h>
-#include <string.h>
 
 TEST(time_that_goes_back_is_refused)
 {
