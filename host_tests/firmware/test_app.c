@@ -5,9 +5,9 @@
 #include "base/hang_test.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
-#include "support/board.h"
 #include "support/documented_limits.h"
 #include "support/roles.h"
+#include "support/talk.h"
 #include "support/test.h"
 
 void setUp(void)
@@ -49,8 +49,7 @@ TEST(test_banner_then_header_then_rows)
 
 TEST(test_first_five_rows_warm_up)
 {
-    board_start_resting();
-    board_run_ms(300);
+    talk_start();
     for (size_t i = 0; i < 10; i++) {
         TEST_ASSERT_EQUAL_UINT(i < LIMIT_WARM_ROWS ? ROW_WARMING_UP : 0, board.rows[i].flags & ROW_WARMING_UP);
     }
@@ -69,13 +68,11 @@ TEST(test_values_of_a_resting_board)
     TEST_ASSERT_INT_WITHIN(6, -1166, row->roll_cdeg);
     TEST_ASSERT_INT_WITHIN(6, -674, row->pitch_cdeg);
     TEST_ASSERT_EQUAL_UINT(ROW_STUCK, row->flags);
-    stream_free(&still);
 }
 
 TEST(test_clock_wrap_is_seamless)
 {
-    static stream_t noisy;
-    noisy = board_noisy_stream(1000, 100.0, 1.5, 3u);
+    stream_t noisy = board_noisy_stream(1000, 100.0, 1.5, 3u);
     board_start(&noisy, 0.0, 0xFFFFFFFFu - 5000000u);
     board_run_ms(10000);
     for (size_t i = 1; i < board.row_count; i++) {
@@ -83,7 +80,6 @@ TEST(test_clock_wrap_is_seamless)
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & (ROW_COASTED | ROW_FAULT | ROW_DROPPED));
     }
     TEST_ASSERT_TRUE(board.row_count > 990);
-    stream_free(&noisy);
 }
 
 TEST(test_settings_show_and_set)
@@ -104,12 +100,9 @@ TEST(test_settings_show_and_set)
                  { "baud", "# baud 115200" },
                  { "stop", "# stopped" },
                  { "go", "# going" } };
-    board_start_resting();
-    board_run_ms(200);
+    talk_start();
     for (size_t i = 0; i < sizeof talk / sizeof talk[0]; i++) {
-        size_t before = board.note_count;
-        board_type(talk[i].typed);
-        board_run_ms(150);
+        size_t before = talk_typed(talk[i].typed, 150);
         TEST_ASSERT_EQUAL_STRING(by_role(talk[i].answer), board.notes[before]);
         TEST_ASSERT_EQUAL_size_t(before + 1, board.note_count);
     }
@@ -134,12 +127,9 @@ TEST(test_refusals_name_the_legal_values)
                  { "mode xml", "# refused 4: mode is one of csv plot" },
                  { "hello", "# refused 1: unknown command (type help)" },
                  { "stop now", "# refused 1: unknown command (type help)" } };
-    board_start_resting();
-    board_run_ms(200);
+    talk_start();
     for (size_t i = 0; i < sizeof talk / sizeof talk[0]; i++) {
-        size_t before = board.note_count;
-        board_type(talk[i].typed);
-        board_run_ms(100);
+        size_t before = talk_typed(talk[i].typed, 100);
         TEST_ASSERT_EQUAL_STRING(by_role(talk[i].answer), board.notes[before]);
         TEST_ASSERT_EQUAL_size_t(before + 1, board.note_count);
     }
@@ -148,8 +138,7 @@ TEST(test_refusals_name_the_legal_values)
 
 TEST(test_line_ends_and_blank_lines)
 {
-    board_start_resting();
-    board_run_ms(200);
+    talk_start();
     size_t before = board.note_count;
     hal_host_type("every 2\revery 3\r\n\n\r\n  \nevery 4\n");
     board_run_ms(200);
@@ -160,26 +149,20 @@ TEST(test_line_ends_and_blank_lines)
 
 TEST(test_garbage_and_long_lines_are_refused_whole)
 {
-    board_start_resting();
-    board_run_ms(200);
-    size_t before = board.note_count;
-    board_type("rate 400 and then a great deal more than any command has");
-    board_run_ms(100);
+    talk_start();
+    size_t before = talk_typed("rate 400 and then a great deal more than any command has", 100);
     TEST_ASSERT_EQUAL_STRING("# refused 2: line too long", board.notes[before]);
-    board_type("ra\x01te 400");
-    board_run_ms(100);
+    (void)talk_typed("ra\x01te 400", 100);
     TEST_ASSERT_EQUAL_STRING("# refused 3: illegal characters", board.notes[before + 1]);
     TEST_ASSERT_EQUAL_UINT(1000, settings()->rate_dhz);
     assert_every_latched_sample_has_its_row(1);
-    board_type("status");
-    board_run_ms(300);
+    (void)talk_typed("status", 300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("lines refused 2", before));
 }
 
 TEST(test_flood_of_garbage_costs_no_row)
 {
-    board_start_resting();
-    board_run_ms(200);
+    talk_start();
     for (int i = 0; i < 60; i++) {
         hal_host_type("\x02\xFFzzzz help help help help help help help help help ~\x7F");
     }
@@ -192,11 +175,8 @@ TEST(test_help_lists_every_command)
 {
     static const char *const words[] = { "filter", "rate", "range", "every",  "baud",
                                          "mode",   "stop", "go",    "status", "help" };
-    board_start_resting();
-    board_run_ms(200);
-    size_t before = board.note_count;
-    board_type("help");
-    board_run_ms(500);
+    talk_start();
+    size_t before = talk_typed("help", 500);
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
         TEST_ASSERT_TRUE_MESSAGE(board_notes_with(words[i], before) > 0, words[i]);
     }
@@ -215,34 +195,25 @@ TEST(test_every_follows_what_the_line_carries)
     TEST_ASSERT_EQUAL_UINT16(60, settings_smallest_every(9600, 8000));
     TEST_ASSERT_EQUAL_UINT16(1, settings_smallest_every(1000u * LIMIT_ROW_BYTES, 1000)); /* ten bits a byte */
     TEST_ASSERT_EQUAL_UINT16(2, settings_smallest_every(1000u * LIMIT_ROW_BYTES - 1u, 1000));
-    board_start_resting();
-    board_run_ms(200);
-    size_t before = board.note_count;
-    board_type("rate 400");
-    board_run_ms(200);
+    talk_start();
+    size_t before = talk_typed("rate 400", 200);
     TEST_ASSERT_EQUAL_STRING("# every 3: the least for this baud rate", board.notes[before + 1]);
 }
 
 TEST(test_800_hz_says_its_bus_speed)
 {
-    board_start_resting();
-    board_run_ms(200);
-    size_t before = board.note_count;
-    board_type("rate 800");
-    board_run_ms(200);
+    talk_start();
+    size_t before = talk_typed("rate 800", 200);
     TEST_ASSERT_EQUAL_STRING("# rate 800 Hz, I2C at 400 kHz", board.notes[before]);
 }
 
 TEST(test_baud_change_loses_nothing)
 {
-    board_start_resting();
-    board_run_ms(200);
-    board_type("baud 500000");
-    board_run_ms(500);
+    talk_start();
+    (void)talk_typed("baud 500000", 500);
     TEST_ASSERT_EQUAL_UINT32(500000, hal_host_baud());
     TEST_ASSERT_EQUAL_STRING("# baud 500000", board_last_note());
-    board_type("baud 9600");
-    board_run_ms(2000);
+    (void)talk_typed("baud 9600", 2000);
     TEST_ASSERT_EQUAL_UINT32(9600, hal_host_baud());
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
 }
@@ -253,15 +224,13 @@ TEST(test_every_thins_rows_and_keeps_flags)
     still.rows[104].lsb[2] = 4095;
     board_start(&still, 0.0, 0);
     board_run_ms(150);
-    board_type("every 10");
-    board_run_ms(3000);
+    (void)talk_typed("every 10", 3000);
     size_t clipped = 0;
     for (size_t i = 0; i < board.row_count; i++) {
         clipped += (board.rows[i].flags & ROW_CLIPPED) != 0;
     }
     TEST_ASSERT_EQUAL_size_t(1, clipped);
     TEST_ASSERT_INT_WITHIN(4, 12 + 30, (int)board.row_count);
-    stream_free(&still);
 }
 
 /* 9600 baud carries a short row in 40 ms; `every` forced, it fits, so fill the ring by hand: the line stands still. */
@@ -284,9 +253,7 @@ TEST(test_rows_without_room_are_dropped_whole_and_told)
         uint32_t step_us = board.rows[i].t_us - board.rows[i - 1].t_us;
         missing += (step_us + 5000u) / 10000u - 1u;
     }
-    size_t before = board.note_count;
-    board_type("status");
-    board_run_ms(300);
+    size_t before = talk_typed("status", 300);
     char told[32];
     snprintf(told, sizeof told, "dropped %u,", (unsigned)missing);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(told, before));
@@ -294,10 +261,8 @@ TEST(test_rows_without_room_are_dropped_whole_and_told)
 
 TEST(test_plot_mode_is_labels_only)
 {
-    board_start_resting();
-    board_run_ms(200);
-    board_type("mode plot");
-    board_run_ms(300);
+    talk_start();
+    (void)talk_typed("mode plot", 300);
     size_t plot_rows = 0;
     for (size_t i = 0; i < board.note_count; i++) {
         float raw_roll, roll, raw_pitch, pitch;
@@ -310,8 +275,7 @@ TEST(test_plot_mode_is_labels_only)
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("#", before));
-    board_type("mode csv");
-    board_run_ms(300);
+    (void)talk_typed("mode csv", 300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("t_us,x_lsb", before));
 }
 
@@ -322,8 +286,7 @@ TEST(test_plot_mode_is_labels_only)
 static void change_and_check(const char *command)
 {
     size_t rows_before = board.row_count;
-    board_type(command);
-    board_run_ms(120);
+    (void)talk_typed(command, 120);
     size_t warm = 0;
     for (size_t i = rows_before; i < board.row_count; i++) {
         warm += (board.rows[i].flags & ROW_WARMING_UP) != 0;
@@ -336,16 +299,13 @@ TEST(test_changes_at_every_phase_lose_nothing)
 {
     static const char *const commands[] = { "filter {plain}", "rate 200", "filter {robust}",
                                             "rate 100",       "range 4",  "range 16" };
-    board_start_resting();
-    board_run_ms(300);
-    board_type("baud 500000");
-    board_run_ms(100);
+    talk_start();
+    (void)talk_typed("baud 500000", 100);
     for (unsigned i = 0; i < 120; i++) {
         board_run_ms(10.0 + (double)i * 0.117);
         change_and_check(commands[i % 6]);
     }
-    board_type("stop");
-    board_run_ms(100);
+    (void)talk_typed("stop", 100);
     assert_every_latched_sample_has_its_row(0);
     for (size_t i = 1; i < board.row_count; i++) {
         TEST_ASSERT_TRUE((int32_t)(board.rows[i].t_us - board.rows[i - 1].t_us) > 0);
@@ -355,11 +315,9 @@ TEST(test_changes_at_every_phase_lose_nothing)
 /* A byte lost to a framing error or a full ring makes its line garbage: "every 1000" must not become "every 100". */
 TEST(test_a_line_with_a_lost_byte_is_refused)
 {
-    board_start_resting();
-    board_run_ms(200);
+    talk_start();
     hal_host_faults.corrupt_rx_every = 9;
-    board_type("every 1000");
-    board_run_ms(100);
+    (void)talk_typed("every 1000", 100);
     hal_host_faults.corrupt_rx_every = 0;
     TEST_ASSERT_EQUAL_UINT(1, settings()->every);
     TEST_ASSERT_EQUAL_STRING("# refused 3: illegal characters", board_last_note());
@@ -371,20 +329,15 @@ TEST(test_plot_mode_on_a_slow_line_answers)
     stream_t wide = board_constant_stream(1000, 100.0, 190, -95, -141);
     board_start(&wide, 0.0, 0);
     board_run_ms(300);
-    board_type("baud 9600");
-    board_run_ms(500);
-    board_type("mode plot");
-    board_run_ms(3000);
+    (void)talk_typed("baud 9600", 500);
+    (void)talk_typed("mode plot", 3000);
     for (int i = 0; i < 9; i++) {
         board_type("status");
     }
     board_run_ms(20000);
-    size_t before = board.note_count;
-    board_type("mode csv");
-    board_run_ms(90000);
+    size_t before = talk_typed("mode csv", 90000);
     TEST_ASSERT_EQUAL_UINT(MODE_CSV, settings()->mode);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("t_us,x_lsb", before));
-    stream_free(&wide);
 }
 
 TEST(test_stop_is_not_undone_by_a_change_that_follows)
@@ -392,8 +345,7 @@ TEST(test_stop_is_not_undone_by_a_change_that_follows)
     board_start_resting();
     board_run_ms(500);
     board_type("stop");
-    board_type("rate 50");
-    board_run_ms(500);
+    (void)talk_typed("rate 50", 500);
     size_t rows = board.row_count;
     board_run_ms(500);
     TEST_ASSERT_EQUAL_size_t(rows, board.row_count);
@@ -407,14 +359,11 @@ TEST(test_change_of_filter_goes_on_from_the_old_output)
         alternating.rows[i].lsb[2] = (int16_t)(248 + ((i & 1u) ? 6 : -6));
     }
     board_start(&alternating, 0.0, 0);
-    board_type("filter {plain}");
-    board_run_ms(3000);
+    (void)talk_typed("filter {plain}", 3000);
     size_t before = board.row_count;
-    board_type("filter {robust}");
-    board_run_ms(100);
+    (void)talk_typed("filter {robust}", 100);
     for (size_t i = before; i < board.row_count; i++) {
         TEST_ASSERT_INT_WITHIN(14, 969, board.rows[i].mg[2]);
     }
     TEST_ASSERT_TRUE(board.row_count > before + 5);
-    stream_free(&alternating);
 }

@@ -9,8 +9,8 @@
 #include "base/counters.h"
 #include "hal_i2c.h"
 #include "path/pipeline.h"
-#include "support/board.h"
 #include "support/random.h"
+#include "support/talk.h"
 #include "support/test.h"
 
 enum { NEIGHBOUR_ID = 0x42 };
@@ -22,22 +22,14 @@ static uint8_t on_rx(uint8_t reg, uint8_t byte)
     return neighbour != 0 && hal_host_sensor.address == neighbour && reg == ADXL345_DEVID ? NEIGHBOUR_ID : byte;
 }
 
-static stream_t stream;
-
 void setUp(void)
 {
     neighbour = 0;
 }
 
-void tearDown(void)
-{
-    stream_free(&stream);
-}
-
 static void start(void)
 {
-    stream_free(&stream);
-    stream = board_noisy_stream(3000, 100.0, 1.5, 3u);
+    stream_t stream = board_noisy_stream(3000, 100.0, 1.5, 3u);
     board_start_with_rx(&stream, on_rx);
     board_run_ms(1003);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
@@ -101,8 +93,7 @@ TEST(test_a_fault_in_a_change_of_rate_keeps_no_old_period)
     for (unsigned phase = 0; phase < 20; phase++) {
         start();
         hal_host_faults.sda_low = true;
-        board_type("rate 50");
-        board_run_ms(10.0 + phase * 0.5);
+        (void)talk_typed("rate 50", 10.0 + phase * 0.5);
         hal_host_faults.sda_low = false;
         board_run_ms(500);
         size_t row = board.row_count;
@@ -160,8 +151,7 @@ TEST(test_a_stop_while_a_line_is_low_reaches_the_sensor_later)
         hold(phase % 2, true);
         board_run_ms((phase < 200 ? 10.0 : 120.0) * random_uniform(&chance));
         size_t rows = board.row_count;
-        board_type("stop");
-        board_run_ms(200);
+        (void)talk_typed("stop", 200);
         TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
         TEST_ASSERT_TRUE(board.row_count <= rows + 2);
         rows = board.row_count;
@@ -177,8 +167,7 @@ TEST(test_a_stop_that_nobody_answers_is_given_up)
 {
     start();
     adxl345_model_power(&hal_host_sensor, false);
-    board_type("stop");
-    board_run_ms(2500);
+    (void)talk_typed("stop", 2500);
     adxl345_counters_t before;
     adxl345_counters_t after;
     adxl345_counters(&before);
@@ -193,7 +182,7 @@ TEST(test_a_neighbour_at_the_other_address_does_not_keep_the_sensor_out)
     static const uint8_t addresses[] = { ADXL345_ADDRESS_LOW, ADXL345_ADDRESS_HIGH };
     for (size_t i = 0; i < 2; i++) {
         neighbour = addresses[1 - i];
-        stream = board_noisy_stream(3000, 100.0, 1.5, 3u);
+        stream_t stream = board_noisy_stream(3000, 100.0, 1.5, 3u);
         board_start_with_rx(&stream, on_rx);
         hal_host_sensor.address = addresses[i];
         board_run_ms(500);
@@ -207,7 +196,6 @@ TEST(test_a_neighbour_at_the_other_address_does_not_keep_the_sensor_out)
         board_run_ms(150);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
         TEST_ASSERT_EQUAL_HEX8(addresses[i], adxl345_address());
-        stream_free(&stream);
     }
 }
 

@@ -17,13 +17,6 @@
 #include "support/talk.h"
 #include "support/test.h"
 
-static stream_t stream;
-
-void tearDown(void)
-{
-    stream_free(&stream);
-}
-
 /* A line is of the characters from blank to `~`, 32 to 126; what ends it is no character of it. */
 TEST(test_every_other_byte_in_a_line_is_refused_as_such)
 {
@@ -196,7 +189,7 @@ TEST(test_a_run_of_ten_seconds_counts_as_lasting)
 /* x, y and z read the same on a carrier that lies across: all of it comes to one axis, reading x sqrt(3) / 200. */
 static int z_mg_of(int16_t lsb)
 {
-    stream = board_constant_stream(200, 100.0, lsb, lsb, lsb);
+    stream_t stream = board_constant_stream(200, 100.0, lsb, lsb, lsb);
     board_start(&stream, 0.0, 0);
     board_run_ms(300);
     talk_type("scale 200 200 200");
@@ -205,7 +198,6 @@ static int z_mg_of(int16_t lsb)
     board_run_ms(1000);
     const board_row_t *row = &board.rows[board.row_count - 1];
     TEST_ASSERT_EQUAL_INT(lsb, row->lsb[0]);
-    stream_free(&stream);
     return row->mg[2];
 }
 
@@ -225,7 +217,7 @@ TEST(test_a_row_shows_up_to_32_g)
  */
 TEST(test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range)
 {
-    stream = board_constant_stream(2000, 100.0, 600, 0, 248);
+    stream_t stream = board_constant_stream(2000, 100.0, 600, 0, 248);
     board_start(&stream, 0.0, 0);
     board_run_ms(300);
     talk_type("baud 9600");
@@ -240,8 +232,7 @@ TEST(test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range)
     }
     size_t first = board.row_count;
     adxl345_model_power(&hal_host_sensor, false);
-    board_type("range 2");
-    board_run_ms(100);
+    (void)talk_typed("range 2", 100);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
     TEST_ASSERT_EQUAL_UINT8(4, adxl345_queued());
     board_run_ms(4000);

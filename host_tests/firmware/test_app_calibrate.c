@@ -22,7 +22,6 @@ typedef struct {
     double g[3];
 } attitude_t;
 
-static stream_t stream;
 static test_random_t dice;
 
 static const attitude_t ups[] = { { { 1, 0, 0 } },  { { -1, 0, 0 } }, { { 0, 1, 0 } },
@@ -31,11 +30,6 @@ static const attitude_t ups[] = { { { 1, 0, 0 } },  { { -1, 0, 0 } }, { { 0, 1, 
 void setUp(void)
 {
     random_seed(&dice, 5);
-}
-
-void tearDown(void)
-{
-    stream_free(&stream);
 }
 
 /* One g in the direction of a, tilted: up to `degrees` off, by random shares across. */
@@ -55,7 +49,7 @@ static attitude_t tilted(attitude_t a, double degrees)
 /* Each of the attitudes for LIES_S, then turned to the next one for TURNS_S; noise of 1 LSB. */
 static void start_lays(const attitude_t *lays, size_t count, adxl345_part_t part)
 {
-    stream = board_constant_stream(count * LAY_ROWS, HZ, 0, 0, 0);
+    stream_t stream = board_constant_stream(count * LAY_ROWS, HZ, 0, 0, 0);
     for (size_t i = 0; i < stream.count; i++) {
         size_t lay = i / LAY_ROWS;
         size_t row = i % LAY_ROWS;
@@ -168,7 +162,6 @@ TEST(test_cal6_of_any_part)
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# scale ", note));
         TEST_ASSERT_EQUAL_size_t(0, board_notes_with("refused", note));
         worst = fmax(worst, worst_tilt_deg(&part, &uncalibrated));
-        stream_free(&stream);
     }
     printf("worst tilt: %.3f degree after cal6, %.2f before\n", worst, uncalibrated);
     TEST_ASSERT_TRUE(worst <= 0.3);
@@ -270,7 +263,6 @@ TEST(test_a_part_beyond_the_limits_is_refused)
         size_t note = talk_typed("cal6", 41700.0);
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with(parts[i].told, note));
         TEST_ASSERT_EQUAL_MEMORY(&before, &settings()->calibration, sizeof before);
-        stream_free(&stream);
     }
 }
 
@@ -328,7 +320,6 @@ TEST(test_tare_levels_any_mounting)
         const board_row_t *row = &board.rows[board.row_count - 1];
         TEST_ASSERT_INT_WITHIN(70, 0, row->roll_cdeg);
         TEST_ASSERT_INT_WITHIN(70, 0, row->pitch_cdeg);
-        stream_free(&stream);
     }
 }
 
@@ -343,7 +334,6 @@ TEST(test_tare_of_what_is_no_rest_is_refused)
     size_t note = talk_typed("tare", 3000.0);
     TEST_ASSERT_EQUAL_STRING("# refused 8: moving", board.notes[note + 1]);
     TEST_ASSERT_EQUAL_MEMORY(&before, &settings()->calibration, sizeof before);
-    stream_free(&stream);
     start_lays(&pulled, 1, adxl345_part_typical);
     note = talk_typed("tare", 3000.0);
     TEST_ASSERT_EQUAL_STRING("# refused 11: not 1 g", board.notes[note + 1]);
@@ -367,6 +357,5 @@ TEST(test_cal_finds_offsets)
         for (int axis = 0; axis < 3; axis++) {
             TEST_ASSERT_INT_WITHIN(8, 16 * offsets[axis], settings()->calibration.offset_lsb_q4[axis]);
         }
-        stream_free(&stream);
     }
 }

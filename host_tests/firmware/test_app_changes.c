@@ -8,17 +8,10 @@
 #include "base/counters.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
-#include "support/board.h"
+#include "support/talk.h"
 #include "support/test.h"
 
-static stream_t stream;
-
 /* Here, because a test that fails does not reach its end. */
-void tearDown(void)
-{
-    stream_free(&stream);
-}
-
 /* No sensor and wrong identity by turns, ten times: each is told once until samples come again, then anew. */
 TEST(test_alternating_faults_are_told_once_each)
 {
@@ -57,18 +50,15 @@ TEST(test_counters_stay_at_their_greatest_value)
 /* Whole seconds since the start, over a stop and over the wrap of the microseconds. */
 TEST(test_uptime_counts_seconds)
 {
-    stream = board_constant_stream(1000, 100.0, 31, -53, 248);
+    stream_t stream = board_constant_stream(1000, 100.0, 31, -53, 248);
     board_start(&stream, 0.0, 0xFFFFFFFFu - 2500000u);
     board_run_ms(990);
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_SECONDS));
     board_run_ms(30);
     TEST_ASSERT_EQUAL_UINT32(1, counted(COUNT_SECONDS));
-    board_type("stop");
-    board_run_ms(6000);
+    (void)talk_typed("stop", 6000);
     TEST_ASSERT_EQUAL_UINT32(7, counted(COUNT_SECONDS));
-    size_t before = board.note_count;
-    board_type("status");
-    board_run_ms(300);
+    size_t before = talk_typed("status", 300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", uptime s 7", before));
 }
 
@@ -78,17 +68,15 @@ TEST(test_uptime_counts_seconds)
  */
 TEST(test_go_begins_cold)
 {
-    stream = board_constant_stream(1000, 100.0, 0, 0, 248);
+    stream_t stream = board_constant_stream(1000, 100.0, 0, 0, 248);
     for (size_t i = 0; i < stream.count; i++) {
         stream.rows[i].lsb[2] = (int16_t)((i & 1u) ? 254 : 242);
     }
     board_start(&stream, 0.0, 0);
     board_run_ms(2000);
-    board_type("stop");
-    board_run_ms(200);
+    (void)talk_typed("stop", 200);
     size_t first = board.row_count;
-    board_type("go");
-    board_run_ms(400);
+    (void)talk_typed("go", 400);
     const board_row_t *row = &board.rows[first];
     TEST_ASSERT_TRUE(board.row_count >= first + 10);
     /* 242 and 254 LSB are 945.3 and 992.2 mg */
@@ -107,7 +95,7 @@ TEST(test_go_begins_cold)
 TEST(test_old_samples_are_filtered_as_before_a_change_of_range)
 {
     size_t old_on_the_way = 0;
-    stream = board_constant_stream(1000, 100.0, 600, 0, 248);
+    stream_t stream = board_constant_stream(1000, 100.0, 600, 0, 248);
     for (unsigned phase = 0; phase < 116; phase++) {
         board_start(&stream, 0.0, 0);
         board_run_ms(300.0);

@@ -10,7 +10,7 @@
 #include "base/health.h"
 #include "hal_watchdog.h"
 #include "path/pipeline.h"
-#include "support/board.h"
+#include "support/talk.h"
 #include "support/test.h"
 
 void setUp(void)
@@ -91,9 +91,7 @@ TEST(test_stop_during_a_fault_does_not_call_it_over)
     (void)start_streaming();
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(300);
-    size_t before = board.note_count;
-    board_type("stop");
-    board_run_ms(300);
+    size_t before = talk_typed("stop", 300);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
 }
 
@@ -149,8 +147,7 @@ TEST(test_stop_and_go_at_once_during_a_fault_do_not_call_it_over)
     for (int blanks = 0; blanks < 120; blanks++) { /* 87 us each before the commands: 10 ms of phases */
         char typed[160];
         snprintf(typed, sizeof typed, "%*s", blanks + 7, "stop\ngo");
-        board_type(typed);
-        board_run_ms(60);
+        (void)talk_typed(typed, 60);
     }
     TEST_ASSERT_EQUAL_size_t(120, board_notes_with("# going", before));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
@@ -213,22 +210,18 @@ TEST(test_ten_minutes_without_a_sensor)
 TEST(test_ten_minutes_stopped)
 {
     (void)start_streaming();
-    board_type("stop");
-    board_run_ms(600e3);
+    (void)talk_typed("stop", 600e3);
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
     size_t rows = board.row_count;
-    board_type("go");
-    board_run_ms(1000);
+    (void)talk_typed("go", 1000);
     TEST_ASSERT_INT_WITHIN(6, 97, (int)(board.row_count - rows));
 }
 
 TEST(test_slowest_rate_and_largest_every)
 {
-    board_start_resting();
-    board_run_ms(300);
+    talk_start();
     board_type("rate 12.5");
-    board_type("every 10000");
-    board_run_ms(900e3);
+    (void)talk_typed("every 10000", 900e3);
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
     board_type("every 1");
     size_t rows = board.row_count;
@@ -242,14 +235,11 @@ TEST(test_slowest_rate_and_largest_every)
  */
 TEST(test_a_minute_with_the_ring_full)
 {
-    board_start_resting();
-    board_run_ms(300);
-    board_type("baud 9600");
-    board_run_ms(500);
+    talk_start();
+    (void)talk_typed("baud 9600", 500);
     for (int i = 0; i < 60; i++) {
         board_type("help");
-        board_type("status");
-        board_run_ms(1000);
+        (void)talk_typed("status", 1000);
     }
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
     board_run_ms(15000); /* what waits is said, and 2 s are over */

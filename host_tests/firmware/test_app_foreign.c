@@ -7,7 +7,7 @@
 #include "adxl345.h"
 #include "adxl345_driver.h"
 #include "adxl345_registers.h"
-#include "support/board.h"
+#include "support/talk.h"
 #include "support/test.h"
 
 /* of a `status`, a millisecond apart */
@@ -22,11 +22,6 @@ void setUp(void)
 {
     real = 0;
     stream = board_noisy_stream(300, 100.0, 1.5, 3u);
-}
-
-void tearDown(void)
-{
-    stream_free(&stream);
 }
 
 static uint8_t id_at(uint8_t address)
@@ -60,8 +55,7 @@ TEST(test_fault_2_names_the_device_that_was_found_at_every_phase)
             board_start_with_rx(&stream, on_rx);
             hal_host_sensor.address = addresses[a];
             board_run_ms(phase);
-            board_type("status");
-            board_run_ms(100);
+            (void)talk_typed("status", 100);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_WRONG_ID, adxl345_fault());
             the_line_is(addresses[a]);
         }

@@ -15,8 +15,7 @@
 /* The mode may be another one: the header follows. */
 static void assert_loaded(const char *line, const char *words)
 {
-    size_t before = board.note_count;
-    talk_type(line);
+    size_t before = talk_typed(line, 400);
     TEST_ASSERT_EQUAL_size_t_MESSAGE(before + 2, board.note_count, line);
     TEST_ASSERT_EQUAL_STRING(words, board.notes[before]);
     TEST_ASSERT_EQUAL_INT(0, strncmp(board.notes[before + 1], "t_us,", 5));
@@ -127,8 +126,7 @@ TEST(test_a_failed_save_is_said_before_the_next_command)
     talk_type("rate 50");
     size_t before = board.note_count;
     board_type("save");
-    board_type("load");
-    board_run_ms(2000);
+    (void)talk_typed("load", 2000);
     TEST_ASSERT_EQUAL_STRING("# refused 7: EEPROM failed", board.notes[before]);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# saved", before));
 }

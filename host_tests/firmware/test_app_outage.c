@@ -7,7 +7,7 @@
 #include "base/counters.h"
 #include "base/notices.h"
 #include "path/pipeline.h"
-#include "support/board.h"
+#include "support/talk.h"
 #include "support/test.h"
 
 /* What a line says of an outage that is over. */
@@ -189,8 +189,7 @@ TEST(test_the_end_of_a_fault_keeps_its_numbers_until_it_is_told)
 {
     outage_t was[2];
     board_start_resting();
-    board_type("baud 9600");
-    board_run_ms(1000);
+    (void)talk_typed("baud 9600", 1000);
     size_t before = board.note_count;
     take_away(&was[0], 500);
     for (int i = 0; i < 6; i++) {
@@ -215,14 +214,12 @@ TEST(test_what_is_lost_is_counted_before_it_is_told)
 {
     outage_t was;
     board_start_resting();
-    board_type("baud 9600");
-    board_run_ms(1000);
+    (void)talk_typed("baud 9600", 1000);
     take_away(&was, 500);
     for (int i = 0; i < 6; i++) { /* 0.2 s of answers */
         board_type("odr");
     }
-    board_type("baud 115200");
-    board_run_ms(20);
+    (void)talk_typed("baud 115200", 20);
     give_back(&was);
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_LOST));
     board_run_ms(1500);
@@ -258,9 +255,7 @@ TEST(test_a_fault_that_ends_in_a_plot_is_told_with_its_length)
     for (int twice = 0; twice <= 1; twice++) {
         adxl345_model_power(&hal_host_sensor, false);
         board_run_ms(300);
-        size_t before = board.note_count;
-        board_type("mode plot");
-        board_run_ms(400);
+        size_t before = talk_typed("mode plot", 400);
         adxl345_model_power(&hal_host_sensor, true);
         board_run_ms(2000);
         if (twice) { /* gone again before it was told: one outage */
@@ -270,8 +265,7 @@ TEST(test_a_fault_that_ends_in_a_plot_is_told_with_its_length)
             board_run_ms(2000);
         }
         TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
-        board_type("mode csv");
-        board_run_ms(200);
+        (void)talk_typed("mode csv", 200);
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with("over", before));
         told_t told = told_by(board.note_count - 1);
         TEST_ASSERT_DOUBLE_WITHIN(50.0, twice ? 3220 : 720, told.ms);
@@ -286,8 +280,7 @@ TEST(test_a_fault_that_begins_in_a_plot_is_told_behind_it)
         outage_t first, was;
         board_start_resting();
         board_run_ms(500);
-        board_type("mode plot");
-        board_run_ms(300);
+        (void)talk_typed("mode plot", 300);
         take_away(&first, 700);
         give_back(&first);
         take_away(&was, 3000);
@@ -297,8 +290,7 @@ TEST(test_a_fault_that_begins_in_a_plot_is_told_behind_it)
         for (int step = 0; step <= 1; step++) {
             if (step == over) {
                 TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault", 0));
-                board_type("mode csv");
-                board_run_ms(500);
+                (void)talk_typed("mode csv", 500);
             } else {
                 give_back(&was);
             }
@@ -319,10 +311,8 @@ TEST(test_a_cut_of_int1_loses_no_sample)
     static const char *const rates[] = { "rate 12.5", "rate 25",  "rate 50", "rate 100",
                                          "rate 200",  "rate 400", "rate 800" };
     for (size_t r = 0; r < sizeof rates / sizeof rates[0]; r++) {
-        board_start_resting();
-        board_run_ms(300);
-        board_type(rates[r]);
-        board_run_ms(1000);
+        talk_start();
+        (void)talk_typed(rates[r], 1000);
         for (unsigned tenths = 0; tenths < 10; tenths++) {
             hal_host_faults.int1_cut = true;
             board_run_ms(500);

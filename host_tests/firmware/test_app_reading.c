@@ -14,9 +14,7 @@
 static void assert_rows_wait(const char *command)
 {
     talk_start();
-    size_t note = board.note_count;
-    board_type(command);
-    board_run_ms(6000);
+    size_t note = talk_typed(command, 6000);
     TEST_ASSERT_TRUE_MESSAGE(board.note_count > note, command);
     double last_ms = board.note_ms[board.note_count - 1];
     size_t next = board.row_count;
@@ -62,8 +60,7 @@ TEST(test_filters_go_on_meanwhile)
 {
     talk_start();
     uint32_t before = counted(COUNT_SAMPLES);
-    board_type("help");
-    board_run_ms(1500);
+    (void)talk_typed("help", 1500);
     TEST_ASSERT_UINT32_WITHIN(2, before + 150u, counted(COUNT_SAMPLES));
 }
 
@@ -72,8 +69,7 @@ TEST(test_short_answers_and_a_reset_hold_no_row)
     talk_start();
     board_type("rate");
     board_type("version");
-    board_type("nonsense");
-    board_run_ms(1000);
+    (void)talk_typed("nonsense", 1000);
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_HELD));
 }
 
@@ -83,12 +79,10 @@ TEST(test_the_next_line_lets_rows_go_on)
     static const char *const lines[] = { "", "rate" };
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         talk_start();
-        board_type("status");
-        board_run_ms(500);
+        (void)talk_typed("status", 500);
         double typed_ms = hal_host_now_ms();
         size_t rows = board.row_count;
-        board_type(lines[i]);
-        board_run_ms(300);
+        (void)talk_typed(lines[i], 300);
         TEST_ASSERT_TRUE(board.row_count > rows + 25);
         TEST_ASSERT_TRUE(board.rows[rows].at_ms - typed_ms < 30.0);
     }
@@ -98,8 +92,7 @@ TEST(test_a_plot_goes_on)
 {
     talk_start();
     talk_type("mode plot");
-    board_type("help");
-    board_run_ms(3000);
+    (void)talk_typed("help", 3000);
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_HELD));
 }
 
@@ -144,8 +137,7 @@ TEST(test_a_change_of_baud_behind_long_answers_resets_nothing)
         for (int k = 0; k < 4; k++) {
             board_type(lines[i]);
         }
-        board_type("baud 19200");
-        board_run_ms(12000);
+        (void)talk_typed("baud 19200", 12000);
         TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
         TEST_ASSERT_EQUAL_UINT32(19200, settings()->baud);
     }
@@ -155,15 +147,11 @@ TEST(test_help_lists_the_parameters_of_the_filter_in_force)
 {
     talk_start();
     talk_type("filter {robust}");
-    size_t before = board.note_count;
-    board_type("help");
-    board_run_ms(1000);
+    size_t before = talk_typed("help", 1000);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# gate: 1 to 16, 0: off", before));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# b0", before));
     talk_type("filter {default}");
-    before = board.note_count;
-    board_type("help");
-    board_run_ms(1000);
+    before = talk_typed("help", 1000);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# gate:", before));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# every: 1 to 10000", before));
 }

@@ -5,9 +5,9 @@
 #include "filter_list.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
-#include "support/board.h"
 #include "support/documented_limits.h"
 #include "support/roles.h"
+#include "support/talk.h"
 #include "support/test.h"
 
 void setUp(void)
@@ -29,9 +29,7 @@ static void board_start_with_a_slow_processor(void)
 static void type_and_read(const char *typed, const char *answer)
 {
     answer = by_role(answer);
-    size_t before = board.note_count;
-    board_type(typed);
-    board_run_ms(150);
+    size_t before = talk_typed(typed, 150);
     TEST_ASSERT_TRUE_MESSAGE(board.note_count > before, typed);
     TEST_ASSERT_EQUAL_STRING(answer, board.notes[before]);
 }
@@ -92,8 +90,7 @@ TEST(test_a_rate_too_fast_for_the_filter_is_refused)
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
     hal_host_cpu_hz = 5000000; /* not even the rest of a sample's way */
     type_and_read("filter {light}", "# refused 5: takes 2235 of 0 cycles a sample");
-    board_type("status");
-    board_run_ms(300);
+    (void)talk_typed("status", 300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("lines refused 3", before));
 }
 
@@ -122,10 +119,8 @@ TEST(test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_hz)
 /* At 1,000,000 baud the line carries every row at 800 Hz; the filter leaves time for one in several. */
 TEST(test_every_follows_what_the_filter_leaves_time_for)
 {
-    board_start_resting();
-    board_run_ms(200);
-    board_type("baud 1000000");
-    board_run_ms(100);
+    talk_start();
+    (void)talk_typed("baud 1000000", 100);
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         char typed[32], answer[96];
@@ -140,8 +135,7 @@ TEST(test_every_follows_what_the_filter_leaves_time_for)
         size_t before = board.note_count;
         snprintf(typed, sizeof typed, "filter %s", filter_listed_name((filter_kind_t)kind));
         snprintf(answer, sizeof answer, "# every %u: the least for this filter", every);
-        board_type(typed);
-        board_run_ms(150);
+        (void)talk_typed(typed, 150);
         TEST_ASSERT_EQUAL_UINT16(every, settings_every_in_force());
         TEST_ASSERT_EQUAL_size_t(every == 1 ? 0 : 1, board_notes_with(answer, before));
         TEST_ASSERT_EQUAL_size_t(before + (every == 1 ? 1 : 2), board.note_count);

@@ -11,13 +11,6 @@
 #include "support/talk.h"
 #include "support/test.h"
 
-static stream_t stream;
-
-void tearDown(void)
-{
-    stream_free(&stream);
-}
-
 /* R at 100 Hz: 1.5 x 0.02 x 100 = 3 LSB^2. */
 TEST(test_parameters_are_shown_set_and_refused)
 {
@@ -84,7 +77,7 @@ TEST(test_parameters_reach_the_filter)
         "filter {plain}", "r 1000", "r 0.1", "q 1", "filter {robust}", "filter {plain}"
     };
     double rough[6];
-    stream = board_noisy_stream(2000, 100.0, 2.0, 7);
+    stream_t stream = board_noisy_stream(2000, 100.0, 2.0, 7);
     board_start(&stream, 0.0, 0);
     talk_type("offset 5 0 0");
     for (size_t i = 0; i < 6; i++) {
@@ -126,8 +119,7 @@ TEST(test_the_listing_can_be_typed_again)
     talk_type("filter {robust}");
     talk_type("gate 3.37");
     talk_type("r 2.71");
-    size_t before = board.note_count;
-    talk_type("settings");
+    size_t before = talk_typed("settings", 400);
     size_t lines = board.note_count - before;
     TEST_ASSERT_EQUAL_size_t(SETTING_PARAMETERS + 5, lines);
     for (size_t i = 0; i < lines; i++) {
@@ -145,8 +137,7 @@ TEST(test_the_listing_can_be_typed_again)
         talk_type(line);
         TEST_ASSERT_EQUAL_STRING_LEN(listed[i], board.notes[reply], strcspn(listed[i], ":,"));
     }
-    before = board.note_count;
-    talk_type("settings");
+    before = talk_typed("settings", 400);
     for (size_t i = 0; i < lines; i++) {
         TEST_ASSERT_EQUAL_STRING(listed[i], board.notes[before + i]);
     }
@@ -159,8 +150,7 @@ TEST(test_address)
     TEST_ASSERT_EQUAL_STRING("# address auto", talk_answer("address"));
     TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1D", talk_answer("address 54"));
     TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1D", talk_answer("address 0x53"));
-    size_t before = board.note_count;
-    talk_type("address 1D");
+    size_t before = talk_typed("address 1D", 400);
     board_run_ms(1000);
     TEST_ASSERT_EQUAL_STRING("# address 1D", board.notes[before]);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1: ", before)); /* it is not looked for elsewhere */
@@ -194,8 +184,7 @@ TEST(test_i2c)
     TEST_ASSERT_EQUAL_STRING("# rate 50 Hz, I2C at 100 kHz", talk_answer("rate"));
     TEST_ASSERT_EQUAL_STRING("# i2c 400", talk_answer("i2c 400"));
     TEST_ASSERT_EQUAL_STRING("# rate 50 Hz, I2C at 363.6 kHz", talk_answer("rate"));
-    size_t before = board.note_count;
-    talk_type("rate 800");
+    size_t before = talk_typed("rate 800", 400);
     TEST_ASSERT_EQUAL_STRING("# rate 800 Hz, I2C at 400 kHz", board.notes[before]);
     size_t rows = board.row_count;
     board_run_ms(1000);
@@ -207,9 +196,7 @@ static bool is_axes(char a, char b, char c)
     char line[16];
     snprintf(line, sizeof line, "axes %s%c%s%c%s%c", a < 'a' ? "-" : "", a < 'a' ? a + 32 : a, b < 'a' ? "-" : "",
              b < 'a' ? b + 32 : b, c < 'a' ? "-" : "", c < 'a' ? c + 32 : c);
-    size_t before = board.note_count;
-    board_type(line);
-    board_run_ms(60);
+    size_t before = talk_typed(line, 60);
     bool taken = strncmp(board.notes[before] + 2, line, strlen(line)) == 0;
     TEST_ASSERT_TRUE(taken || strncmp(board.notes[before], "# refused 4: axes is one of ", 28) == 0);
     return taken;
@@ -248,7 +235,7 @@ TEST(test_axes)
 /* The resting board reads (31, -53, 248): by hand what offsets, scales and axes make of it. */
 TEST(test_calibration_reaches_the_rows)
 {
-    stream = board_constant_stream(200, 100.0, 31, -53, 248);
+    stream_t stream = board_constant_stream(200, 100.0, 31, -53, 248);
     board_start(&stream, 0.0, 0);
     board_run_ms(500);
     talk_type("offset 11 -3.5 -8");
@@ -291,14 +278,13 @@ TEST(test_calibration_reaches_the_rows)
 /* What tare makes of a part that reads more than 1 g is told, and can be typed again: 264 / 256 = 1.03125. */
 TEST(test_a_level_of_more_than_1_g_can_be_typed_again)
 {
-    stream = board_constant_stream(800, 100.0, 0, 0, 264);
+    stream_t stream = board_constant_stream(800, 100.0, 0, 0, 264);
     for (size_t i = 0; i < stream.count; i++) { /* else it is stuck */
         stream.rows[i].lsb[0] = i % 2 == 0 ? 1 : -1;
     }
     board_start(&stream, 0.0, 0);
     board_run_ms(300);
-    board_type("tare");
-    board_run_ms(4000);
+    (void)talk_typed("tare", 4000);
     TEST_ASSERT_EQUAL_INT16(16896, settings()->calibration.level_q14[2]); /* 264 / 256 */
     TEST_ASSERT_EQUAL_STRING("# level 0 0 1.0312: -1.1499 to 1.1499", board.notes[board.note_count - 2]);
     TEST_ASSERT_EQUAL_STRING("# level 0 0 1.0311: -1.1499 to 1.1499",

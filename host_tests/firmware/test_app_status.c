@@ -7,7 +7,7 @@
 #include "adxl345_registers.h"
 #include "hal_i2c.h"
 #include "hal_sleep.h"
-#include "support/board.h"
+#include "support/talk.h"
 #include "support/test.h"
 
 enum {
@@ -22,9 +22,7 @@ static size_t before;
 static void ask(void)
 {
     before = newest;
-    newest = board.note_count;
-    board_type("status");
-    board_run_ms(200);
+    newest = talk_typed("status", 200);
     TEST_ASSERT_EQUAL_size_t(newest + STATUS_LINES, board.note_count);
     TEST_ASSERT_EQUAL_STRING_LEN("# state ", board.notes[newest], 8);
 }
@@ -153,7 +151,6 @@ TEST(test_readings_that_were_none_are_told)
     ask();
     TEST_ASSERT_EQUAL_UINT(10, corrupted_reads);
     TEST_ASSERT_EQUAL_UINT(corrupted_reads, told("readings torn "));
-    stream_free(&stream);
 }
 
 static unsigned sources_with_overrun;
@@ -173,8 +170,7 @@ TEST(test_overruns_are_told)
 {
     stream_t stream = board_noisy_stream(1000, 100.0, 1.5, 22u);
     start(&stream, look_at_source);
-    board_type("rate 200");
-    board_run_ms(100);
+    (void)talk_typed("rate 200", 100);
     ask();
     sources_with_overrun = 0;
     main_stands_still(100);
@@ -187,7 +183,6 @@ TEST(test_overruns_are_told)
     TEST_ASSERT_EQUAL_UINT(sources_with_overrun, told("overruns "));
     TEST_ASSERT_TRUE(told("drained ") >= 19 + 33 + 33);
     TEST_ASSERT_UINT_WITHIN(1, hal_host_sensor.overruns, told("lost ")); /* by the stamps, which are interpolated */
-    stream_free(&stream);
 }
 
 /* INT1 is held high: the sensor is looked at, and has nothing, again and again. */
@@ -204,7 +199,6 @@ TEST(test_readings_without_a_sample_are_told)
     /* those that only ask are none, and a sample may come behind INT_SOURCE */
     TEST_ASSERT_TRUE(told("empty ") >= 3 && told("empty ") <= sources_without_data);
     TEST_ASSERT_EQUAL_UINT(0, told("readings torn "));
-    stream_free(&stream);
 }
 
 TEST(test_stuck_samples_are_counted)
@@ -214,7 +208,6 @@ TEST(test_stuck_samples_are_counted)
     board_run_ms(5000);
     ask();
     TEST_ASSERT_EQUAL_UINT(60 - 9, told("stuck "));
-    stream_free(&stream);
 }
 
 /* Nobody has answered yet: there is no rate. */
@@ -247,8 +240,7 @@ TEST(test_a_fifo_that_is_behind_is_fetched)
     static const char *const commands[] = { "rate 400", "rate 800" };
     for (unsigned i = 0; i < 4; i++) {
         start(NULL, NULL);
-        board_type(commands[i / 2]);
-        board_run_ms(500);
+        (void)talk_typed(commands[i / 2], 500);
         if (i % 2 == 0) {
             hal_host_faults.int1_cut = true;
             board_run_ms(10);
@@ -277,8 +269,7 @@ TEST(test_what_is_no_restart)
     hal_host_faults.int1_cut = false;
     board_run_ms(300);
     TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_NONE, adxl345_fault());
-    board_type("rate 200");
-    board_run_ms(300);
+    (void)talk_typed("rate 200", 300);
     ask();
     TEST_ASSERT_EQUAL_UINT(0, told("restarts "));
 }
@@ -297,8 +288,7 @@ TEST(test_measured_rate)
             char begin[48];
             double true_hz = atof(rates[r]) * (1.0 + ppm[p] * 1e-6);
             snprintf(typed, sizeof typed, "rate %s", rates[r]);
-            board_type(typed);
-            board_run_ms(100.0 + 40e3 / true_hz);
+            (void)talk_typed(typed, 100.0 + 40e3 / true_hz);
             ask();
             const char *state = board.notes[newest];
             snprintf(begin, sizeof begin, "fault 0, rate %s Hz, measured ", rates[r]);
@@ -311,6 +301,5 @@ TEST(test_measured_rate)
             TEST_ASSERT_EQUAL_CHAR('.', end[-3]);
             TEST_ASSERT_DOUBLE_WITHIN(5e-4 * true_hz, true_hz, told_hz);
         }
-        stream_free(&stream);
     }
 }

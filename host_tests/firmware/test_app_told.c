@@ -8,8 +8,8 @@
 #include "base/notices.h"
 #include "base/text.h"
 #include "path/pipeline.h"
-#include "support/board.h"
 #include "support/documented_limits.h"
+#include "support/talk.h"
 #include "support/test.h"
 
 /*
@@ -80,10 +80,8 @@ TEST(test_a_change_of_rate_loses_nothing)
 {
     board_start_resting();
     board_run_ms(500);
-    board_type("rate 200");
-    board_run_ms(500);
-    board_type("range 4");
-    board_run_ms(500);
+    (void)talk_typed("rate 200", 500);
+    (void)talk_typed("range 4", 500);
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_LOST));
 }
 
@@ -94,8 +92,7 @@ TEST(test_a_change_of_rate_in_an_outage_forgets_no_sample)
     board_run_ms(500);
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(500);
-    board_type("rate 200");
-    board_run_ms(500);
+    (void)talk_typed("rate 200", 500);
     adxl345_model_power(&hal_host_sensor, true);
     board_run_ms(500);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1 over", 0));
@@ -126,18 +123,14 @@ TEST(test_a_command_does_not_call_a_lasting_fault_over)
         TEST_ASSERT_EQUAL_UINT(faults[i], adxl345_fault());
         size_t before = board.note_count;
         for (size_t k = 0; k < sizeof commands / sizeof commands[0]; k++) {
-            board_type(commands[k]);
-            board_run_ms(700);
+            (void)talk_typed(commands[k], 700);
             TEST_ASSERT_EQUAL_UINT_MESSAGE(faults[i], adxl345_fault(), commands[k]);
         }
         TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault", before));
-        board_type("stop");
-        board_run_ms(200);
-        board_type("go");
-        board_run_ms(700);
+        (void)talk_typed("stop", 200);
+        (void)talk_typed("go", 700);
         TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault", before)); /* told again behind the stop */
-        stream_free(&stream);
     }
 }
 
@@ -157,5 +150,4 @@ TEST(test_a_sensor_that_was_away_is_not_suspected)
         TEST_ASSERT_EQUAL_UINT(0, board.rows[row].flags & ROW_STUCK);
     }
     TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_NONE, adxl345_fault());
-    stream_free(&stream);
 }

@@ -14,8 +14,8 @@
 #include "path/gravity.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
-#include "support/board.h"
 #include "support/documented_limits.h"
+#include "support/talk.h"
 #include "support/test.h"
 
 enum { STARTS_S = 1 }; /* the first second warms up */
@@ -165,7 +165,6 @@ static const char last_line[] = "# fault 14 over: after ";
 /* A sensor that reads z at rest, with the noise of a desk, for so many milliseconds. */
 static void start(int16_t z_lsb, double ms)
 {
-    stream_free(&stream);
     stream = board_noisy_stream(1000, 100.0, 1.0, 1401u);
     for (size_t i = 0; i < stream.count; i++) {
         stream.rows[i].lsb[0] = (int16_t)(stream.rows[i].lsb[0] - 31);
@@ -208,8 +207,7 @@ TEST(test_it_is_reported_once_and_ends_with_its_length)
     board_run_ms(3000);
     assert_lines(1, 0);
     TEST_ASSERT_EQUAL_UINT8(FAULT_OTHER_PART, sensor_watch_fault());
-    board_type("status");
-    board_run_ms(20000);
+    (void)talk_typed("status", 20000);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", fault 14, ", 0));
     assert_lines(1, 0);
     move_z(236);
@@ -248,14 +246,12 @@ TEST(test_the_ends_of_two_faults_do_not_mix)
     start(20, 13000);
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(300);
-    board_type("mode plot");
-    board_run_ms(200);
+    (void)talk_typed("mode plot", 200);
     adxl345_model_power(&hal_host_sensor, true);
     move_z(236);
     board_run_ms(5000);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over: after", 0));
-    board_type("mode csv");
-    board_run_ms(1000);
+    (void)talk_typed("mode csv", 1000);
     assert_lines(1, 1);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1 over: after 5", 0));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("000 ms, 0 lost, sensor at 0x53", 0));
@@ -265,29 +261,25 @@ TEST(test_the_ends_of_two_faults_do_not_mix)
 TEST(test_nothing_is_reported_in_a_plot)
 {
     start(20, 300);
-    board_type("mode plot");
-    board_run_ms(500);
+    (void)talk_typed("mode plot", 500);
     size_t before = board.note_count;
     board_run_ms(15000);
     TEST_ASSERT_EQUAL_UINT8(FAULT_OTHER_PART, sensor_watch_fault());
     for (size_t i = before; i < board.note_count; i++) {
         TEST_ASSERT_NULL(strchr(board.notes[i], '#'));
     }
-    board_type("mode csv");
-    board_run_ms(1000);
+    (void)talk_typed("mode csv", 1000);
     assert_lines(1, 0);
 }
 
 TEST(test_stop_and_go_leave_it_as_it_is)
 {
     start(20, 13000);
-    board_type("stop");
-    board_run_ms(20000);
+    (void)talk_typed("stop", 20000);
     assert_lines(1, 0);
     TEST_ASSERT_EQUAL_UINT8(FAULT_OTHER_PART, sensor_watch_fault());
     TEST_ASSERT_EQUAL_STRING("# stopped", board_last_note());
-    board_type("go");
-    board_run_ms(14000);
+    (void)talk_typed("go", 14000);
     TEST_ASSERT_EQUAL_UINT8(FAULT_OTHER_PART, sensor_watch_fault());
     assert_lines(1, 0);
 }
@@ -297,11 +289,9 @@ TEST(test_measurements_neither_count_nor_forget)
     static const char *const commands[] = { "selftest", "noise", "tare", "cal" };
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
         start(20, 7300);
-        board_type(commands[i]);
-        board_run_ms(8000);
+        (void)talk_typed(commands[i], 8000);
         assert_lines(1, 0);
-        board_type(commands[i]);
-        board_run_ms(8000);
+        (void)talk_typed(commands[i], 8000);
         TEST_ASSERT_EQUAL_UINT8(FAULT_OTHER_PART, sensor_watch_fault());
         assert_lines(1, 0);
     }
@@ -334,16 +324,13 @@ TEST(test_a_sound_sensor_is_never_accused)
             adxl345_model_power(&hal_host_sensor, true);
             board_run_ms(1300 + outage * 171);
         }
-        board_type("stop");
-        board_run_ms(15000);
-        board_type("go");
-        board_run_ms(15000);
+        (void)talk_typed("stop", 15000);
+        (void)talk_typed("go", 15000);
         assert_lines(0, 0);
     }
 }
 
 int main(void)
 {
-    stream_free(&stream);
     return test_all();
 }

@@ -3,7 +3,7 @@
  * a reply, an axis of a change of filter a pass, each pass followed at once by the next.
  */
 
-#include "support/board.h"
+#include "support/talk.h"
 #include "support/test.h"
 
 enum { SLOW = 2 }; /* counts a look: the third comes too late */
@@ -16,19 +16,13 @@ void setUp(void)
     stream = board_noisy_stream(500, 100.0, 1.5, 11u);
 }
 
-void tearDown(void)
-{
-    stream_free(&stream);
-}
-
 static void run(uint8_t lap_step, const char *const *lines, size_t count)
 {
     board_start(&stream, 0.0, 0);
     board_run_ms(300.0); /* the sensor's clock is the same in all runs */
     hal_host_faults.lap_step = lap_step;
     for (size_t i = 0; i < count; i++) {
-        board_type(lines[i]);
-        board_run_ms(400.0);
+        (void)talk_typed(lines[i], 400.0);
     }
     board_run_ms(3000.0); /* rows are held for a person who reads */
 }

@@ -21,7 +21,6 @@ static unsigned flags_of(const char *command, int16_t x, int16_t y, int16_t z)
         board_type(command);
     }
     board_run_ms(600);
-    stream_free(&stream);
     return board.rows[board.row_count - 1].flags & ~(unsigned)ROW_STUCK;
 }
 
@@ -83,7 +82,6 @@ TEST(test_missing_samples_are_coasted_over)
     }
     TEST_ASSERT_EQUAL_INT(2, coasts);
     TEST_ASSERT_TRUE(compared > 120);
-    stream_free(&ramp);
 }
 
 /* A sensor hangs on one reading for 60 samples: the tenth and those behind it are marked, the fault is told once. */
@@ -104,7 +102,6 @@ TEST(test_stuck_from_the_tenth_equal_reading_on)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 10: values do not change: check ", 0));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 10 over: ", 0));
     TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# fault", 0));
-    stream_free(&stream);
 }
 
 /* One reading of z in ten is doubled for 3 s: told once, and once that it is over, within 2.6 s. */
@@ -125,7 +122,6 @@ TEST(test_two_sensors_are_told)
     for (size_t i = 0; i < board.row_count; i++) {
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & (ROW_STUCK | ROW_FAULT | ROW_INTEGRITY));
     }
-    stream_free(&stream);
 }
 
 /* A sensor hangs for so many samples, y reads this behind it for one sample, and then it is well. */
@@ -135,7 +131,6 @@ static void hangs(size_t hung, int16_t then_lsb)
     stream.rows[300 + hung].lsb[1] = then_lsb;
     board_start(&stream, 0.0, 0);
     board_run_ms(10.0 * (double)(300 + hung + 400));
-    stream_free(&stream);
 }
 
 /* What it has learned of the noise meanwhile is forgotten: the angles are right at once, and nothing is refused. */
@@ -178,7 +173,6 @@ static double unrest_after(size_t hung)
             double change = board.rows[i].roll_cdeg - board.rows[i - 1].roll_cdeg;
             squares += change * change;
         }
-        stream_free(&stream);
     }
     return squares / 120.0;
 }

@@ -5,9 +5,9 @@
 #include "filter_list.h"
 #include "path/pipeline.h"
 #include "path/supervisor.h"
-#include "support/board.h"
 #include "support/random.h"
 #include "support/roles.h"
+#include "support/talk.h"
 #include "support/test.h"
 
 #include <math.h>
@@ -57,8 +57,7 @@ static void run(stream_t *stream, const char *filter)
     board_run_ms(100);
     char command[40];
     snprintf(command, sizeof command, "filter %s", filter);
-    board_type(command);
-    board_run_ms(SAMPLES * 1000.0 / RATE_HZ);
+    (void)talk_typed(command, SAMPLES * 1000.0 / RATE_HZ);
 }
 
 /* The sample of a row: the first one was latched a period after the first tick. */
@@ -117,7 +116,6 @@ static void assert_left_out(uint8_t bad, fault_t fault)
     TEST_ASSERT_TRUE(before.worst_pitch_deg < 1.5 && after.worst_pitch_deg < 1.5);
     TEST_ASSERT_TRUE(during.worst_deg < (bad == 0 ? 1.5 : bound_deg(bad)));
     TEST_ASSERT_TRUE(during.worst_pitch_deg < (bad == 0 ? bound_deg(bad) : 1.5));
-    stream_free(&stream);
 }
 
 TEST(test_a_bad_x_is_left_out)
@@ -148,7 +146,6 @@ TEST(test_a_healthy_board_leaves_none_out)
     judged_t all = judge(200.0, SAMPLES - 20.0);
     TEST_ASSERT_EQUAL_UINT(0, all.left_out);
     TEST_ASSERT_TRUE(all.worst_deg < 1.5);
-    stream_free(&stream);
 }
 
 /* Another filter believes the axis: the angle is wrong by tens of degrees, and nothing is flagged. */
@@ -159,7 +156,6 @@ TEST(test_another_filter_leaves_none_out)
     judged_t during = judge(FAULT_FROM + 200.0, FAULT_TO - 1.0);
     TEST_ASSERT_EQUAL_UINT(0, during.left_out);
     TEST_ASSERT_TRUE(during.worst_deg > 20.0);
-    stream_free(&stream);
 }
 
 /* Of two bad axes none can be made up. */
@@ -171,7 +167,6 @@ TEST(test_two_bad_axes_are_too_many)
     }
     run(&stream, "auto");
     TEST_ASSERT_EQUAL_UINT(0, judge(FAULT_FROM, FAULT_TO).left_out);
-    stream_free(&stream);
 }
 
 /* What `status` says of an axis that is frozen, with a row for so many samples. */
@@ -180,24 +175,17 @@ static double sigma_of_cdeg(uint8_t axis, const char *every)
     stream_t stream = rolling_stream(axis, FROZEN);
     board_start(&stream, 0.0, 0);
     board_run_ms(100);
-    board_type("filter auto");
-    board_run_ms(5000);
-    size_t first = board.note_count;
-    board_type("status");
-    board_run_ms(100);
+    (void)talk_typed("filter auto", 5000);
+    size_t first = talk_typed("status", 100);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", chosen x ", first));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("without", first));
-    board_type(every);
-    board_run_ms(6500);
-    first = board.note_count;
-    board_type("status");
-    board_run_ms(100);
+    (void)talk_typed(every, 6500);
+    first = talk_typed("status", 100);
     char words[] = ", without z sigma cdeg ";
     words[strlen(", without ")] = "xyz"[axis];
     const char *told = strstr(board.notes[first], words);
     TEST_ASSERT_NOT_NULL(told);
     double sigma_cdeg = strtod(told + strlen(words), NULL);
-    stream_free(&stream);
     return sigma_cdeg;
 }
 
@@ -215,9 +203,7 @@ TEST(test_status_tells_choices_and_the_axis_left_out)
 
 static double sigma_told_cdeg(void)
 {
-    size_t first = board.note_count;
-    board_type("status");
-    board_run_ms(100);
+    size_t first = talk_typed("status", 100);
     const char *told = strstr(board.notes[first], " sigma cdeg ");
     TEST_ASSERT_NOT_NULL(told);
     return strtod(told + strlen(" sigma cdeg "), NULL);
@@ -239,12 +225,9 @@ TEST(test_the_sigma_told_is_that_of_the_noisier_axis)
         }
         board_start(&stream, 0.0, 0);
         board_run_ms(100);
-        board_type("filter auto");
-        board_run_ms(100);
-        board_type("r 1000");
-        board_run_ms(11400);
+        (void)talk_typed("filter auto", 100);
+        (void)talk_typed("r 1000", 11400);
         told_cdeg[swapped] = sigma_told_cdeg();
-        stream_free(&stream);
     }
     TEST_ASSERT_TRUE(told_cdeg[0] > 0.0);
     TEST_ASSERT_DOUBLE_WITHIN(1.0, told_cdeg[0], told_cdeg[1]);
@@ -264,7 +247,6 @@ TEST(test_changes_of_the_choice_are_flagged)
     for (size_t i = 0; i < board.row_count; i++) {
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & ROW_SWITCHED);
     }
-    stream_free(&stream);
 }
 
 /* While the axes change to another filter, the last one first, there is no choice of each to tell. */
@@ -273,19 +255,15 @@ TEST(test_no_choices_are_told_of_a_filter_that_is_leaving)
     stream_t stream = rolling_stream(0, HEALTHY);
     board_start(&stream, 0.0, 0);
     board_run_ms(100);
-    board_type("filter auto");
-    board_run_ms(1000);
+    (void)talk_typed("filter auto", 1000);
     board_type(by_role("filter {plain}"));
     for (int ms = 0; ms < 40 && pipeline_axes()[2].filter.law != filter_listed(plain_kind()); ms++) {
         board_run_ms(1);
     }
     TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline_axes()[0].filter.law);
-    size_t first = board.note_count;
-    board_type("status");
-    board_run_ms(3);
+    size_t first = talk_typed("status", 3);
     TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline_axes()[0].filter.law);
     board_run_ms(100);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# state streaming", first));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("chosen", first));
-    stream_free(&stream);
 }

@@ -263,7 +263,6 @@ static double handed_over_at_s(double ppm)
         TEST_ASSERT_INT_WITHIN(100, board.rows[i].roll_cdeg, board.rows[i + 1].roll_cdeg);
     }
     hal_host_faults.lap_step = 0;
-    stream_free(&stream);
     return at_s;
 }
 
