@@ -13,6 +13,7 @@
 #include "settings/settings.h"
 #include "support/documented_limits.h"
 #include "support/filters.h"
+#include "support/path.h"
 #include "support/random.h"
 #include "support/roles.h"
 #include "support/test.h"
@@ -60,15 +61,7 @@ static void begin(uint8_t kind, uint16_t rate_dhz, double slope)
     world.t_us = 4294900000u; /* wraps in the first second */
     world.slope = slope;
     world.roll_deg = ROLL_CDEG / 100.0;
-    counters_start();
-    coast_wait(world.t_us);
-    pipeline_reset();
-    settings_defaults();
-    pipeline_calibrate(&settings()->calibration);
-    settings_take_filter(kind);
-    pipeline_forget();
-    pipeline_change(&settings()->choice, rate_dhz, 16);
-    pipeline_finish();
+    path_start(kind, rate_dhz, 16, world.t_us);
 }
 
 static bool missing_by(uint32_t t_us, bool sample)

@@ -3,21 +3,14 @@
 #include "path/coast.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
+#include "support/path.h"
 #include "support/test.h"
 
 enum { PERIOD_US = 10000, LOOK_US = 4000, START_US = 1000000 };
 
 void setUp(void)
 {
-    counters_start();
-    pipeline_reset();
-    settings_defaults();
-    pipeline_calibrate(&settings()->calibration);
-    settings_take_filter(0);
-    pipeline_forget();
-    pipeline_change(&settings()->choice, 1000, 16);
-    pipeline_finish();
-    coast_wait(START_US);
+    path_start(0, 1000, 16, START_US);
 }
 
 static bool row_by(uint32_t t_us)

@@ -15,6 +15,7 @@
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support/documented_limits.h"
+#include "support/path.h"
 #include "support/talk.h"
 #include "support/test.h"
 
@@ -26,19 +27,6 @@ static stream_t stream;
 void setUp(void)
 {
     t_us = 0;
-}
-
-static void begin(void)
-{
-    counters_start();
-    coast_wait(0);
-    pipeline_reset();
-    settings_defaults();
-    pipeline_calibrate(&settings()->calibration);
-    settings_take_filter(0);
-    pipeline_forget();
-    pipeline_change(&settings()->choice, 1000, 16);
-    pipeline_finish();
 }
 
 static void sample(int16_t x_lsb, int16_t y_lsb, int16_t z_lsb)
@@ -66,7 +54,7 @@ static void seconds(int many, int16_t z_lsb, uint16_t flags)
 
 TEST(test_ten_seconds_at_rest_and_the_first_within)
 {
-    begin();
+    path_start(0, 1000, 16, 0);
     seconds(STARTS_S + LIMIT_NO_GRAVITY_S - 1, 20, 0);
     TEST_ASSERT_FALSE(gravity_absent());
     seconds(1, 20, 0);
@@ -87,7 +75,7 @@ TEST(test_ten_seconds_at_rest_and_the_first_within)
 
 static bool lacks(int16_t x_lsb, int16_t y_lsb, int16_t z_lsb)
 {
-    begin();
+    path_start(0, 1000, 16, 0);
     for (int k = 0; k < STARTS_S + LIMIT_NO_GRAVITY_S; k++) {
         for (int i = 0; i < 100; i++) {
             sample(x_lsb, y_lsb, z_lsb);
@@ -122,7 +110,7 @@ TEST(test_a_second_with_disturbed_samples_proves_nothing)
 {
     static const uint16_t flags[] = { ROW_COASTED, ROW_COASTED | ROW_FAULT, ROW_STUCK, ROW_CLIPPED, ROW_WARMING_UP };
     for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++) {
-        begin();
+        path_start(0, 1000, 16, 0);
         seconds(STARTS_S + LIMIT_NO_GRAVITY_S - 1, 20, 0);
         seconds(3 * LIMIT_NO_GRAVITY_S, 20, flags[i]);
         TEST_ASSERT_FALSE(gravity_absent());
@@ -136,7 +124,7 @@ TEST(test_a_second_with_disturbed_samples_proves_nothing)
 
 TEST(test_seconds_without_samples_prove_nothing)
 {
-    begin();
+    path_start(0, 1000, 16, 0);
     seconds(STARTS_S + 1, 20, 0);
     for (int k = 0; k < 3 * LIMIT_NO_GRAVITY_S; k++) {
         pipeline_second(10000);
@@ -147,7 +135,7 @@ TEST(test_seconds_without_samples_prove_nothing)
 /* As on a wheel that turns: it does not read gravity, but is not at rest. */
 TEST(test_a_second_that_moves_restarts_the_ten)
 {
-    begin();
+    path_start(0, 1000, 16, 0);
     for (int k = 0; k < 5; k++) {
         seconds(LIMIT_NO_GRAVITY_S, 20, 0); /* the first of them moves, or warms up */
         TEST_ASSERT_FALSE(gravity_absent());

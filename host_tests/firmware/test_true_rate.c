@@ -12,6 +12,7 @@
 #include "settings/settings.h"
 #include "support/board.h"
 #include "support/documented_limits.h"
+#include "support/path.h"
 #include "support/roles.h"
 #include "support/test.h"
 
@@ -27,22 +28,9 @@ void setUp(void)
     rows_come = true;
 }
 
-static void begin_at(uint8_t kind, uint16_t rate_dhz)
-{
-    counters_start();
-    coast_wait(0);
-    pipeline_reset();
-    settings_defaults();
-    pipeline_calibrate(&settings()->calibration);
-    settings_take_filter(kind);
-    pipeline_forget();
-    pipeline_change(&settings()->choice, rate_dhz, 16);
-    pipeline_finish();
-}
-
 static void begin(uint8_t kind)
 {
-    begin_at(kind, 1000);
+    path_start(kind, 1000, 16, 0);
 }
 
 static void sample_of(int16_t x_lsb, int16_t y_lsb, int16_t z_lsb)
@@ -126,7 +114,7 @@ TEST(test_the_least_that_is_followed_at_each_rate)
         for (uint32_t us = nominal_us * 97u / 100u; us <= nominal_us * 103u / 100u; us += step_us) {
             double off_dhz = fabs((double)(10000000u / us) - rate_dhz);
             bool followed = false;
-            begin_at(0, rate_dhz);
+            path_start(0, rate_dhz, 16, 0);
             for (int k = 0; k <= LIMIT_FOLLOW_S; k++) {
                 followed = look(us);
             }

@@ -4,6 +4,7 @@
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support/filters.h"
+#include "support/path.h"
 #include "support/random.h"
 #include "support/shipped.h"
 #include "support/test.h"
@@ -28,14 +29,7 @@ _Static_assert((int)TILT_GATED == (int)ROW_GATED && (int)TILT_COASTED == (int)RO
 
 static void begin_both(uint8_t kind, uint16_t rate_dhz)
 {
-    coast_wait(0);
-    pipeline_reset();
-    settings_defaults();
-    pipeline_calibrate(&settings()->calibration);
-    settings_take_filter(kind);
-    pipeline_forget();
-    pipeline_change(&settings()->choice, rate_dhz, 16);
-    pipeline_finish();
+    path_start(kind, rate_dhz, 16, 0);
     TEST_ASSERT_TRUE(tilt_filter_begin_with(&tilt, rate_dhz / 10U, filter_listed((filter_kind_t)kind)));
     first_rows = law_facts((filter_kind_t)kind).starts_with_median ? 0 : FILTER_WARM_UP_SAMPLES;
 }

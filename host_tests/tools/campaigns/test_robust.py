@@ -3,7 +3,6 @@ described."""
 import copy
 import pathlib
 import random
-import re
 import sys
 from unittest import mock
 

@@ -1,7 +1,6 @@
 """docs/results/variable-structure.md: its tables are those of docs/papers.md, what has no chance in it comes out again, its picture shows what it
 should."""
 import pathlib
-import re
 import sys
 from unittest import mock
 

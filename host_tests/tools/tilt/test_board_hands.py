@@ -4,7 +4,6 @@ their own: what passes, what fails and why, what never comes. Run from the repos
 build/venv/bin/python."""
 import pathlib
 import sys
-import unittest
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()

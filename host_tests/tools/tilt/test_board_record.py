@@ -4,7 +4,6 @@ repository root with build/venv/bin/python."""
 import json
 import pathlib
 import sys
-import unittest
 from unittest import mock
 
 sys.dont_write_bytecode = True

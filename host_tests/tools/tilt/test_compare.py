@@ -16,7 +16,7 @@ sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import laws  # noqa: E402
 from laws import DEFAULT, LIGHT, LONG, PLAIN, ROBUST  # noqa: E402
 from tilt_case import run_tilt  # noqa: E402
-from tilt import angles, cli, judge, native, stream  # noqa: E402
+from tilt import angles, judge, native, stream  # noqa: E402
 from tilt.commands import compare  # noqa: E402
 
 STREAMS = pathlib.Path("sim/streams")
