@@ -2,8 +2,7 @@
  * Generic property, over the list of filters: a filter that missed up to 200 samples, at rest or in motion, predicts
  * meanwhile and is soon back where one that missed none is. Runs on the PC and on the chip.
  */
-#include "support/filters.h"
-#include "support/test.h"
+#include "support/law_tests.h"
 
 /* Where two filters that have recovered may differ: each is within 1/4 LSB and 1/32 for rounding. */
 #define RECOVERED_LSB_Q16 (2 * (65536 / 4 + 65536 / 32))
@@ -15,11 +14,6 @@
 #define DRIFT_LSB_Q16 (65536 / 128)
 
 enum { GAP_MAX = 200, SETTLING = 300, RAMP_LSB = 2 };
-
-static void make(filter_t *f, uint8_t kind, uint16_t rate_dhz)
-{
-    TEST_ASSERT_TRUE(init_default(f, (filter_kind_t)kind, rate_dhz));
-}
 
 /*
  * After a gap the filter is back, recovery_samples later and for good, where one without a gap is. slope: of the motion
@@ -48,8 +42,7 @@ static void assert_recovery(const filter_t *settled, int16_t slope, bool goes_on
 
 static void assert_recovery_from_all_gaps(uint8_t kind, int16_t slope, bool goes_on)
 {
-    filter_t f;
-    make(&f, kind, 1000);
+    filter_t f = made_kind(kind, 1000);
     filter_reset(&f, (int16_t)(-slope * SETTLING));
     for (int16_t k = 1; k <= SETTLING; k++) {
         (void)filter_update(&f, (int16_t)(-slope * (SETTLING - k)));

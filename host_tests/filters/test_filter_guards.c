@@ -4,18 +4,18 @@
 
 #include "kalman.h"
 #include "noise.h"
-#include "support/filters.h"
+#include "support/law_tests.h"
 #include "support/roles.h"
-#include "support/test.h"
 
 #define ONE_UQ26 0x4000000u
 
-static void start(filter_t *f, uint32_t p11, uint32_t p12, uint32_t p22)
+static filter_t started(uint32_t p11, uint32_t p12, uint32_t p22)
 {
     filter_config_t config = filter_defaults(filter_listed(plain_kind()), 1000);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, filter_listed(plain_kind()), &config));
-    filter_reset(f, 0);
-    f->own.kalman.p = (filter_covariance_t){ p11, p12, p22 };
+    filter_t f = made(filter_listed(plain_kind()), &config);
+    filter_reset(&f, 0);
+    f.own.kalman.p = (filter_covariance_t){ p11, p12, p22 };
+    return f;
 }
 
 /*
@@ -24,8 +24,7 @@ static void start(filter_t *f, uint32_t p11, uint32_t p12, uint32_t p22)
  */
 TEST(test_p22_does_not_wrap_below_zero)
 {
-    filter_t f;
-    start(&f, 0, ONE_UQ26, ONE_UQ26 / 2);
+    filter_t f = started(0, ONE_UQ26, ONE_UQ26 / 2);
     TEST_ASSERT_TRUE(f.own.kalman.q22_uq26 < ONE_UQ26 / 10);
     (void)filter_update(&f, 10);
     TEST_ASSERT_NOT_EQUAL_UINT16(0, f.gain_uq16);
@@ -38,8 +37,7 @@ TEST(test_p22_does_not_wrap_below_zero)
  */
 TEST(test_p22_that_stays_positive_is_kept)
 {
-    filter_t f;
-    start(&f, 0, ONE_UQ26, ONE_UQ26);
+    filter_t f = started(0, ONE_UQ26, ONE_UQ26);
     /* predicted: P12 = 2, P11 = 3, P22 = 1 + q; P12^2 / (P11 + 1) = 1: with q left over, in UQ6.26 */
     double expected = (double)f.own.kalman.q22_uq26 / ONE_UQ26;
     (void)filter_update(&f, 10);
@@ -88,8 +86,7 @@ TEST(test_r_follows_with_a_hysteresis_of_an_eighth)
 /* While warming up and when running, a sample outside -4096..4095 is the nearest one inside, and flagged. */
 static void assert_clamped(uint8_t kind, uint8_t before, int16_t z_lsb, int16_t nearest_lsb)
 {
-    filter_t f;
-    TEST_ASSERT_TRUE(init_default(&f, (filter_kind_t)kind, 1000));
+    filter_t f = made_kind(kind, 1000);
     for (uint8_t i = 0; i < before; i++) {
         (void)filter_update(&f, (int16_t)(nearest_lsb - nearest_lsb / 100));
     }
@@ -121,8 +118,7 @@ TEST(test_a_sample_at_the_end_of_the_range_is_not_flagged)
     FOR_EACH_KIND(kind)
     {
         for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
-            filter_t f;
-            TEST_ASSERT_TRUE(init_default(&f, (filter_kind_t)kind, 1000));
+            filter_t f = made_kind(kind, 1000);
             for (uint8_t k = 0; k < 20U; k++) {
                 (void)filter_update(&f, ends[i]);
                 TEST_ASSERT_BITS_LOW(FILTER_SATURATED, f.flags);

@@ -15,15 +15,12 @@ void setUp(void)
     random_state = SEED;
 }
 
-static void make(filter_t *f, uint8_t kind, uint16_t rate_dhz)
+static filter_t made_random(uint8_t kind)
 {
-    TEST_ASSERT_TRUE(init_default(f, (filter_kind_t)kind, rate_dhz));
-}
-
-static void make_random(filter_t *f, uint8_t kind)
-{
+    filter_t f;
     uint32_t refused = 0;
-    TEST_ASSERT_TRUE(init_random(f, (filter_kind_t)kind, &random_state, &refused));
+    TEST_ASSERT_TRUE(init_random(&f, (filter_kind_t)kind, &random_state, &refused));
+    return f;
 }
 
 static int16_t any_sample(void)
@@ -77,8 +74,7 @@ TEST(defaults_are_legal_at_every_rate)
     FOR_EACH_KIND(kind)
     {
         for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
-            filter_t f;
-            make(&f, kind, rates[i]);
+            (void)made_kind(kind, rates[i]);
         }
     }
 }
@@ -164,13 +160,11 @@ TEST(constant_in_constant_out_after_reset)
     FOR_EACH_KIND(kind)
     {
         for (uint8_t i = 0; i < 6; i++) {
-            filter_t f;
-            make(&f, kind, 1000);
+            filter_t f = made_kind(kind, 1000);
             assert_constant_stays(&f, levels[i], 300);
         }
         for (uint16_t run = 0; run < ON_PC_OR_CHIP(2000, 20); run++) {
-            filter_t f;
-            make_random(&f, kind);
+            filter_t f = made_random(kind);
             assert_constant_stays(&f, (int16_t)(any_sample() / 8), 50);
         }
     }
@@ -183,8 +177,7 @@ TEST(warm_up_puts_out_the_running_median)
     static const int16_t twice_median[] = { 18, 6, 18, 17, 16 };
     FOR_EACH_KIND_WITH_MEDIAN(kind)
     {
-        filter_t f;
-        make(&f, kind, 1000);
+        filter_t f = made_kind(kind, 1000);
         for (uint8_t k = 0; k < 5; k++) {
             TEST_ASSERT_EQUAL_INT32((int32_t)twice_median[k] * 32768, filter_update(&f, in[k]));
             TEST_ASSERT_EQUAL_UINT8(FILTER_WARMING_UP, f.flags);
@@ -199,8 +192,7 @@ TEST(a_missing_sample_in_warm_up_keeps_the_median)
 {
     FOR_EACH_KIND_WITH_MEDIAN(kind)
     {
-        filter_t f;
-        make(&f, kind, 1000);
+        filter_t f = made_kind(kind, 1000);
         (void)filter_update(&f, 40);
         TEST_ASSERT_EQUAL_INT32((int32_t)40 * 65536, filter_missing(&f));
         TEST_ASSERT_EQUAL_UINT8(FILTER_WARMING_UP | FILTER_COASTED, f.flags);
@@ -221,8 +213,7 @@ TEST(mirrored_input_gives_mirrored_output)
         int32_t tolerance = law_facts((filter_kind_t)kind).mirror_lsb_q16;
         TEST_ASSERT_TRUE(tolerance >= 0);
         for (uint16_t run = 0; run < ON_PC_OR_CHIP(200, 4); run++) {
-            filter_t up;
-            make_random(&up, kind);
+            filter_t up = made_random(kind);
             filter_t down = up;
             int16_t level = 0;
             for (uint16_t k = 0; k < 250; k++) {
@@ -266,8 +257,7 @@ TEST(reset_forgets_all_but_the_level)
     FOR_EACH_KIND(kind)
     {
         for (uint16_t run = 0; run < ON_PC_OR_CHIP(300, 10); run++) {
-            filter_t f;
-            make_random(&f, kind);
+            filter_t f = made_random(kind);
             for (uint16_t k = run % 12U; k != 0U; k--) {
                 (void)filter_update(&f, any_sample());
             }
@@ -288,9 +278,8 @@ TEST(copy_goes_on_like_the_original)
     FOR_EACH_KIND(kind)
     {
         for (uint16_t run = 0; run < ON_PC_OR_CHIP(100, 4); run++) {
-            filter_t f;
             filter_t copy;
-            make_random(&f, kind);
+            filter_t f = made_random(kind);
             for (uint8_t k = 0; k < 100; k++) {
                 if (k == 10U) {
                     memcpy(&copy, &f, sizeof f);
@@ -314,8 +303,7 @@ TEST(two_halves_are_the_whole)
     FOR_EACH_KIND(kind)
     {
         for (uint16_t run = 0; run < ON_PC_OR_CHIP(300, 4); run++) {
-            filter_t whole;
-            make_random(&whole, kind);
+            filter_t whole = made_random(kind);
             filter_t first;
             filter_t second;
             memcpy(&first, &whole, sizeof whole);
@@ -343,8 +331,7 @@ TEST(two_halves_are_the_whole)
 TEST(any_calls_stay_within_bounds)
 {
     for (uint16_t run = 0; run < ON_PC_OR_CHIP(2000, 20); run++) {
-        filter_t f;
-        make_random(&f, any_kind(run));
+        filter_t f = made_random(any_kind(run));
         for (uint16_t k = 0; k < ON_PC_OR_CHIP(500, 100); k++) {
             assert_bounds(&f, random_call(&f));
         }
@@ -356,8 +343,7 @@ TEST(predicting_for_ever_stays_within_bounds)
 {
     FOR_EACH_KIND(kind)
     {
-        filter_t f;
-        make(&f, kind, 125);
+        filter_t f = made_kind(kind, 125);
         for (int16_t k = 0; k < 40; k++) {
             (void)filter_update(&f, (int16_t)(k * 60));
         }

@@ -1,14 +1,14 @@
 /* synth_opt: its schedule, classes and start on integers; runs on the PC and on the chip. */
 #include "support/law_tests.h"
 
-static void make(filter_t *f, int32_t variant_u, int32_t p0_lsb2_q8, int32_t r_lsb2_q8)
+static filter_t made_opt(int32_t variant_u, int32_t p0_lsb2_q8, int32_t r_lsb2_q8)
 {
     filter_config_t config = { 1000,
                                { [SYNTH_OPT_VARIANT_U] = variant_u,
                                  [SYNTH_OPT_P0_LSB2_Q8] = p0_lsb2_q8,
                                  [SYNTH_OPT_R_LSB2_Q8] = r_lsb2_q8,
                                  [SYNTH_OPT_RATE_MAX_LSB_S] = RATE_UNLIMITED_LSB_S } };
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_synth_opt, &config));
+    return made(&filter_law_synth_opt, &config);
 }
 
 static void warm_up(filter_t *f, int16_t z_lsb)
@@ -30,8 +30,7 @@ static uint16_t gain_of_next_sample(filter_t *f)
  */
 TEST(schedule_of_16_by_hand)
 {
-    filter_t f;
-    make(&f, 0, 25600, 1600);
+    filter_t f = made_opt(0, 25600, 1600);
     warm_up(&f, 7);
     TEST_ASSERT_EQUAL_UINT16(61681, gain_of_next_sample(&f));
     TEST_ASSERT_EQUAL_UINT16(61681, gain_of_next_sample(&f));
@@ -47,8 +46,7 @@ TEST(schedule_of_16_by_hand)
 /* First gain of U: Pe = ((2 + 1/6)^2 + (4/3)^2 + 1/36) P0 = 6.5 P0, b0 = 104/105 for 16. Limit 11/13. */
 TEST(schedule_of_u_by_hand)
 {
-    filter_t f;
-    make(&f, 1, 25600, 1600);
+    filter_t f = made_opt(1, 25600, 1600);
     warm_up(&f, 7);
     TEST_ASSERT_EQUAL_UINT16(64912, gain_of_next_sample(&f));
     feed(&f, 7, 11);
@@ -58,14 +56,13 @@ TEST(schedule_of_u_by_hand)
 /* a1 of U's limit is -1/6: from 600 after rest at 0, b0 = 11/13: 507.69; then 2 x1 + x1 / 6. Exact has 2 x1. */
 TEST(coast_extrapolates_with_the_limit_of_a1)
 {
-    filter_t f;
-    make(&f, 1, 25600, 1600);
+    filter_t f = made_opt(1, 25600, 1600);
     filter_reset(&f, 0);
     int32_t x = filter_update(&f, 600);
     TEST_ASSERT_INT32_WITHIN(600, (int32_t)600 * 65536 / 13 * 11, x);
     TEST_ASSERT_INT32_WITHIN(600, 2 * x + x / 6, coast(&f));
     TEST_ASSERT_EQUAL_UINT8(FILTER_COASTED, f.flags);
-    make(&f, 0, 25600, 1600);
+    f = made_opt(0, 25600, 1600);
     filter_reset(&f, 0);
     x = filter_update(&f, 600);
     TEST_ASSERT_EQUAL_INT32(2 * x, coast(&f));
@@ -83,8 +80,7 @@ TEST(class_is_the_nearest_ratio)
         { 131073, 256, 5 }, { 25600000, 3, 5 }, { 25600000, 256000, 3 },
     };
     for (uint8_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        filter_t f;
-        make(&f, 0, cases[i].p0_lsb2_q8, cases[i].r_lsb2_q8);
+        filter_t f = made_opt(0, cases[i].p0_lsb2_q8, cases[i].r_lsb2_q8);
         TEST_ASSERT_EQUAL_UINT8(cases[i].ratio_class, f.own.synth.of.scheduled.ratio_class);
     }
 }
@@ -92,8 +88,7 @@ TEST(class_is_the_nearest_ratio)
 /* R set during the warm-up counts, R set later changes no gain. */
 TEST(noise_counts_until_the_schedule_runs)
 {
-    filter_t f;
-    make(&f, 0, 25600, 1600);
+    filter_t f = made_opt(0, 25600, 1600);
     (void)filter_update(&f, 7);
     filter_set_noise(&f, 25600);
     TEST_ASSERT_EQUAL_UINT8(0, f.own.synth.of.scheduled.ratio_class);
@@ -109,8 +104,7 @@ TEST(noise_counts_until_the_schedule_runs)
 TEST(gains_are_within_the_clamps)
 {
     for (uint8_t turn = 0; turn < 12; turn++) {
-        filter_t f;
-        make(&f, turn & 1, 1L << (8 + 2 * (turn >> 1)), 256);
+        filter_t f = made_opt(turn & 1, 1L << (8 + 2 * (turn >> 1)), 256);
         TEST_ASSERT_EQUAL_UINT8(turn >> 1, f.own.synth.of.scheduled.ratio_class);
         warm_up(&f, 7);
         for (uint8_t k = 0; k < 16; k++) {
@@ -130,8 +124,7 @@ TEST(gains_are_within_the_clamps)
 TEST(start_is_the_median)
 {
     static const int16_t z_lsb[FILTER_WARM_UP_SAMPLES] = { 40, 44, -4000, 42, 43 };
-    filter_t f;
-    make(&f, 0, 25600, 1600);
+    filter_t f = made_opt(0, 25600, 1600);
     int32_t x = 0;
     for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
         x = filter_update(&f, z_lsb[k]);
@@ -144,8 +137,7 @@ TEST(start_is_the_median)
 /* A gap does not use up the schedule; a reset ends it, as if z0 had been read for ever. */
 TEST(schedule_goes_by_samples_seen)
 {
-    filter_t f;
-    make(&f, 0, 25600, 1600);
+    filter_t f = made_opt(0, 25600, 1600);
     warm_up(&f, 7);
     (void)gain_of_next_sample(&f);
     for (uint8_t k = 0; k < 30; k++) {
@@ -160,8 +152,7 @@ TEST(schedule_goes_by_samples_seen)
 /* A sample's variance while warming up, R b0 in the schedule (16/17 R), 2/3 R behind it, and of U 0.8059 R. */
 TEST(probe_reports_the_variance)
 {
-    filter_t f;
-    make(&f, 0, 409600, 25600);
+    filter_t f = made_opt(0, 409600, 25600);
     warm_up(&f, 7);
     filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_UINT32(25600, probe.p_lsb2_q8);
@@ -171,7 +162,7 @@ TEST(probe_reports_the_variance)
     filter_reset(&f, 7);
     filter_probe(&f, &probe);
     TEST_ASSERT_UINT32_WITHIN(4, 17067, probe.p_lsb2_q8);
-    make(&f, 1, 409600, 25600);
+    f = made_opt(1, 409600, 25600);
     filter_reset(&f, 7);
     filter_probe(&f, &probe);
     TEST_ASSERT_UINT32_WITHIN(4, 20632, probe.p_lsb2_q8);

@@ -20,6 +20,11 @@ static inline filter_t made_default(const filter_law_t *law, uint16_t rate_dhz)
     return made(law, &config);
 }
 
+static inline filter_t made_kind(uint8_t kind, uint16_t rate_dhz)
+{
+    return made_default(filter_listed((filter_kind_t)kind), rate_dhz);
+}
+
 /* So many equal samples. */
 static inline void feed(filter_t *f, int16_t z_lsb, uint16_t samples)
 {
