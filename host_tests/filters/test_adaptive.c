@@ -1,6 +1,6 @@
 /* The guarded adaptive filter: what it does with a ramp, outliers, a burst, a jump; limits of its parameters. */
 #include "adaptive.h"
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 enum { NOISE_LSB = 8 }; /* uniform, +-8 LSB: sigma 4.9 */
 

@@ -6,9 +6,9 @@
 #include "kalman.h"
 #include "stream.h"
 #include "support/chain.h"
-#include "support/law_tests.h"
 #include "support/random.h"
 #include "support/roles.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>

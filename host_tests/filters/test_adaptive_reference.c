@@ -1,9 +1,9 @@
 /* adaptive against its double twin step by step, against the float filter it grew from, and in theory. */
 #include "adaptive.h"
 #include "reference/adaptive.h"
-#include "support/law_tests.h"
 #include "support/random.h"
 #include "support/roll.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>

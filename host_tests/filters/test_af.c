@@ -1,6 +1,6 @@
 /* af in integers, on the PC and on the chip: what it learns. Against double: test_wide_reference.c. */
 #include "mixture.h"
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 #define SEED 90210UL
 #define ONE_UQ24 0x1000000UL

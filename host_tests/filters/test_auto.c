@@ -1,6 +1,6 @@
 /* auto: gate and restart of the members, the choice by the bounded scores, gaps. */
 #include "support/auto.h"
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 /* At rest without noise: four on end beyond every gate move nothing, the fifth restarts, and it stays there. */
 TEST(test_four_outliers_move_nothing_and_the_fifth_restarts)

@@ -1,7 +1,7 @@
 /* auto: its members against the linear filter in double, what follows from its equations. */
 #include "support/auto.h"
-#include "support/law_tests.h"
 #include "support/random.h"
+#include "support/test_law.h"
 
 #include <math.h>
 

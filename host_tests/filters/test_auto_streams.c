@@ -1,6 +1,6 @@
 /* auto on the tilt streams that it is made for, beside the filters that it is to beat. */
-#include "support/law_tests.h"
 #include "support/random.h"
+#include "support/test_law.h"
 #include "support/tilt_phases.h"
 
 #include <math.h>

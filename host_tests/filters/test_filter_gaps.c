@@ -2,7 +2,7 @@
  * Generic property, over the list of filters: a filter that missed up to 200 samples, at rest or in motion, predicts
  * meanwhile and is soon back where one that missed none is. Runs on the PC and on the chip.
  */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 /* Where two filters that have recovered may differ: each is within 1/4 LSB and 1/32 for rounding. */
 #define RECOVERED_LSB_Q16 (2 * (65536 / 4 + 65536 / 32))

@@ -4,8 +4,8 @@
 
 #include "kalman.h"
 #include "noise.h"
-#include "support/law_tests.h"
 #include "support/roles.h"
+#include "support/test_law.h"
 
 #define ONE_UQ26 0x4000000u
 

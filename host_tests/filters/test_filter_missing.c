@@ -2,7 +2,7 @@
  * Generic properties, over the list of filters, of samples that are missing: the verbs that filter_missing is made of
  * (tracker.h), and a filter that warms up again.
  */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
  * Generic properties, over the list of filters: what every filter of lib/filters promises, whatever its rule. Runs on
  * the PC and on the chip. Facts about single laws live in support_law_NAME.c.
  */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 #include <string.h>
 

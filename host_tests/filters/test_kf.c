@@ -1,5 +1,5 @@
 /* kf in integers, on the PC and on the chip; against the double reference: test_kf_reference.c. */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 /* q22 = q T^3 / R at 100 Hz, R 3, q 10000: 1e4 x 1e-6 / 3 = 3.3333e-3 = 223696.2 / 2^26; after R x 4 a quarter. */
 TEST(noise_scales_the_drive)

@@ -1,5 +1,5 @@
 /* kf3 in integers, on the PC and on the chip; against the double reference: test_kf3_reference.c. */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 #define SEED 8004UL
 

@@ -1,7 +1,7 @@
 /* kf3 against Eigen: the double reference against DARE, paper 001 and the notes; fixed point against the reference. */
 #include "reference/kf3.h"
 #include "support/law_kf3.h"
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* kf against Eigen: the double reference against numbers of paper 002, the fixed-point filter against the reference. */
 #include "reference/filters.h"
-#include "support/law_tests.h"
 #include "support/own_model.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>

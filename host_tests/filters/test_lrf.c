@@ -1,5 +1,5 @@
 /* lrf in integers, on the PC and on the chip; against the double reference: test_lrf_reference.c. */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 #define SEED 4713UL
 

@@ -1,6 +1,6 @@
 /* lrf against Eigen: the reference against paper 002's numbers, the fixed-point filter against the reference. */
 #include "reference/filters.h"
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>

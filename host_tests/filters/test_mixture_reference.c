@@ -1,7 +1,7 @@
 /* The pieces of mixture.h against libm: posterior, log odds, and the distance of wide.h. */
 #include "mixture.h"
-#include "support/law_tests.h"
 #include "support/roles.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* pbf in integers, on PC and chip: what an outlier moves, recovery. Against double: test_wide_reference.c. */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 /* 100 Hz, R 16 LSB^2: sigma 4 LSB; settled at level. */
 static filter_t settled(int16_t level)

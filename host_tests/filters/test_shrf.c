@@ -1,5 +1,5 @@
 /* shrf in integers, on the PC and on the chip: outliers unused, no lock-out. Against double: test_wide_reference.c. */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 /* 100 Hz, settled at 0. */
 static filter_t settled(int32_t r_lsb2_q8)

@@ -2,7 +2,7 @@
  * soft in integers, on the PC and on the chip: within the soft gate, beyond it, beyond the gate. Against the double
  * reference: test_soft_reference.c.
  */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 #define SEED 4712UL
 #define R_LSB2 16U

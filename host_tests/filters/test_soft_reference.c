@@ -1,6 +1,6 @@
 /* soft against Eigen: steps, weights, recovery. */
 #include "reference/filters.h"
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>

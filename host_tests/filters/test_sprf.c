@@ -2,7 +2,7 @@
  * sprf in integers, on the PC and on the chip: gate, re-acquisition on raw samples. Against the double reference:
  * test_sprf_reference.c.
  */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 #define SEED 4711UL
 #define R_LSB2 16U

@@ -1,6 +1,6 @@
 /* sprf_paper in integers, on the PC and on the chip: gate, no robust start, lock-out. Against double:
  * test_wide_reference.c. */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 /* 100 Hz, R 16 LSB^2: sigma 4 LSB. */
 static filter_t settled(int16_t level)

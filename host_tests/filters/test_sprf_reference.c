@@ -1,7 +1,7 @@
 /* sprf against Eigen, and with the other law that re-acquires against the normal law: gate, no lock-out. */
 #include "reference/filters.h"
-#include "support/law_tests.h"
 #include "support/own_model.h"
+#include "support/test_law.h"
 #include "tracker.h"
 
 #include <math.h>

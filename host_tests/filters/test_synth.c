@@ -1,5 +1,5 @@
 /* synth: its start, its two-product form and its presets on integers; runs on the PC and on the chip. */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 static filter_t made_synth(int32_t a1_q16, int32_t b0_uq16)
 {

@@ -1,5 +1,5 @@
 /* synth_opt: its schedule, classes and start on integers; runs on the PC and on the chip. */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 static filter_t made_opt(int32_t variant_u, int32_t p0_lsb2_q8, int32_t r_lsb2_q8)
 {

@@ -1,6 +1,6 @@
 /* synth_opt against its double reference, and the reference against the values and limits of the notes. */
 #include "reference/synth_opt.h"
-#include "support/law_tests.h"
+#include "support/test_law.h"
 #include "synth.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* synth_plus: its taps, its region and its start on integers; runs on the PC and on the chip. */
-#include "support/law_tests.h"
+#include "support/test_law.h"
 
 static filter_config_t with(uint16_t k, uint16_t b0_uq16, int32_t b1_q16, int32_t b2_q16)
 {

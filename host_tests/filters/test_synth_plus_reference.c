@@ -1,6 +1,6 @@
 /* synth_plus against its double reference, and the reference against what the filter is said to contain. */
 #include "reference/synth_plus.h"
-#include "support/law_tests.h"
+#include "support/test_law.h"
 #include "synth.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* synth against its double reference, and the reference against the closed forms and tables of the notes. */
 #include "reference/synth.h"
-#include "support/law_tests.h"
+#include "support/test_law.h"
 #include "synth.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* sprf_paper, shrf, pbf and af against the matrices of paper 002 in double: steady gains, single steps, whole runs. */
 #include "reference/robust.h"
-#include "support/law_tests.h"
 #include "support/random.h"
 #include "support/roles.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -47,7 +47,7 @@ void reference_coast(reference_filter_t *f);
  */
 double reference_lyapunov(const reference_filter_t *f, double r_true);
 
-/* Table 1 of paper 002, Q on the rate; the gain is made for noise of so many times R: 1, or 60.85 for the linear robust filter. */
+/* Table 1 of paper 002, Q on the rate; the gain is for noise of so many times R: 1, or 60.85 (linear robust filter). */
 reference_filter_t reference_table_1(double factor);
 
 /* 5,000 zeros. */

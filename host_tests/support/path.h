@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/* A cold start as shipped, but for the filter, the output data rate and the range; the next sample may come from `t_us` on. */
+/* A cold start as shipped, but for filter, output data rate and range; the next sample may come from `t_us` on. */
 void path_start(uint8_t kind, uint16_t rate_dhz, uint8_t range_g, uint32_t t_us);
 
 #endif

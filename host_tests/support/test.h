@@ -1,6 +1,6 @@
 /*
- * A test program on Unity: TEST(name) { ... } defines a test and lists it, so that none is forgotten. The main of test.c runs all of a file, in
- * the file's order; setUp and tearDown are written only where there is something to do.
+ * A test program on Unity: TEST(name) { ... } defines a test and lists it, so that none is forgotten. The main of
+ * test.c runs all of a file, in the file's order; setUp and tearDown are written only where there is something to do.
  */
 #ifndef SUPPORT_TEST_H
 #define SUPPORT_TEST_H

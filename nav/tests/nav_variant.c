@@ -8,6 +8,7 @@
 #include "nav_ud.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #ifndef NAV_VARIANT
 #define NAV_VARIANT nav_as_it_is

@@ -1,6 +1,6 @@
 /* What the tests of single laws begin with and do again and again, on the PC and on the chip. */
-#ifndef SUPPORT_LAW_TESTS_H
-#define SUPPORT_LAW_TESTS_H
+#ifndef SUPPORT_TEST_LAW_H
+#define SUPPORT_TEST_LAW_H
 
 #include "support/laws.h"
 #include "support/test.h"
