@@ -18,11 +18,6 @@ void setUp(void)
     rig.limit_us = UINT32_MAX; /* each test says what it may be */
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 TEST(test_configures_as_designed)
 {
     adxl345_start(&at_100_hz);

@@ -42,11 +42,6 @@ void setUp(void)
     rig.limit_us = UINT32_MAX; /* each test says what it may be */
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 static void stream_for_ms(double ms)
 {
     rig_stream_ms(&at_100_hz, ms);

@@ -33,11 +33,6 @@ void setUp(void)
     begin(100.0);
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 static void disturb(unsigned event, uint8_t status)
 {
     hal_host_faults.status_skip = event;

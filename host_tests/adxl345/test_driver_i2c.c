@@ -42,11 +42,6 @@ void setUp(void)
     asked = 0;
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 static const adxl345_i2c_t speeds[] = { ADXL345_I2C_FALLS_BACK, ADXL345_I2C_100_KHZ, ADXL345_I2C_364_KHZ };
 
 static void begin_at(uint16_t rate_dhz, adxl345_i2c_t speed)

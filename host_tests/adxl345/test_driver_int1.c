@@ -38,11 +38,6 @@ static void stall_ms(double ms)
     }
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 /*
  * D2 held high: every sample comes once, with a time as near as the reads are apart (a burst and a pass), and the fault
  * has its name; when D2 is free again it is over.

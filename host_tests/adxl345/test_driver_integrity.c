@@ -111,11 +111,6 @@ void setUp(void)
     rig.pass = pass;
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 static void start_and_change(change_t what, unsigned at, unsigned by, unsigned bursts)
 {
     setUp();

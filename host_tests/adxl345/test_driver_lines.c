@@ -43,11 +43,6 @@ void setUp(void)
     begin(100.0);
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 /* Passes until the fault is told, or is over; how long that took. */
 static double ms_until_fault(bool wanted)
 {

@@ -54,11 +54,6 @@ void setUp(void)
     rig.pass = pass;
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 /* Runs until the condition holds; fails after so many virtual milliseconds. */
 #define RUN_UNTIL(condition, limit_ms)                                                       \
     do {                                                                                     \

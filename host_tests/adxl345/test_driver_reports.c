@@ -39,11 +39,6 @@ void setUp(void)
     begin(100.0, 0.0);
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 static void stream_for_ms(double ms)
 {
     rig_stream_ms(&at_100_hz, ms);

@@ -44,11 +44,6 @@ void setUp(void)
     begin(0.0);
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 static void stream_for_ms(double ms)
 {
     rig_stream_ms(&at_100_hz, ms);
