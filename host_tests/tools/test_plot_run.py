@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of tools/plot_run.py on runs made here, whose errors, counts and matches are known. Run from the repository
-root with the Python that has numpy and matplotlib (build/venv/bin/python). Ends with a line as Unity's."""
+"""Tests of tools/plot_run.py on runs made here, whose errors, counts and matches are known."""
 import json
 import math
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The twenty checks of `tilt board` with the firmware itself in the simulator: hands pull the cable, and begin a fault of simrun for each deed. What
-no simulator has: nobody looks at the LED, no baud rate is ever wrong. Run from the repository root with build/venv/bin/python."""
+"""The twenty checks of `tilt board` with the firmware itself in the simulator: hands pull the cable, and begin a fault of simrun for each deed.
+What no simulator has: nobody looks at the LED, no baud rate is ever wrong."""
 import contextlib
 import io
 import json

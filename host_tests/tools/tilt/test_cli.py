@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of the command `tilt` itself: what is listed, what a wrong word or file says, exit statuses. Run from the repository root with
-build/venv/bin/python."""
+"""Tests of the command `tilt` itself: what is listed, what a wrong word or file says, exit statuses."""
 import pathlib
 import subprocess
 import sys

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Tests of `tilt compare`: its errors against ones computed here, lags that were put in, choices whose reason is known, and what it says when
-filters cannot be told apart. Run from the repository root with build/venv/bin/python."""
+filters cannot be told apart."""
 import json
 import math
 import pathlib

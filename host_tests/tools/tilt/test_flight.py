@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of flights: their file, their simulation against the laws of motion, the frames of the navigation image, the judge. Run from the repository
-root with build/venv/bin/python."""
+"""Tests of flights: their file, their simulation against the laws of motion, the frames of the navigation image, the judge."""
 import contextlib
 import io
 import pathlib

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Each format that people's recordings have: a sample made from known integers gives these integers. Run from the repository root with
-build/venv/bin/python."""
+"""Each format that people's recordings have: a sample made from known integers gives these integers."""
 import json
 import math
 import pathlib

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""What `tilt import` refuses, each with its reason and place and without writing anything. Run from the repository root with
-build/venv/bin/python."""
+"""What `tilt import` refuses, each with its reason and place and without writing anything."""
 import bz2
 import gzip
 import io

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Our own streams and what the firmware sends come through `tilt import` as they are: the shipped streams, the firmware in the simulator,
-and real recordings (RECORDINGS=folder, else ../shared/streams). Run from the repository root with build/venv/bin/python."""
+"""Our own streams and what the firmware sends come through `tilt import` as they are: the shipped streams, the firmware in the simulator, and real
+recordings (RECORDINGS=folder, else ../shared/streams)."""
 import csv
 import os
 import pathlib

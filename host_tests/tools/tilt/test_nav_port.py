@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Tests of `tilt nav` at a serial port: a pseudo terminal behind which the navigation image runs natively (build/host/nav_replay_12, made here when
-it is missing). Run from the repository root with build/venv/bin/python."""
+"""Tests of `tilt nav` at a serial port: a pseudo terminal behind which the navigation image runs natively (build/host/nav_replay_12, made here
+when it is missing)."""
 import contextlib
 import dataclasses
 import os

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of `tilt plot`: what thinning keeps, the spectrum of known signals, pictures and page of made recordings. Run from the repository root
-with build/venv/bin/python."""
+"""Tests of `tilt plot`: what thinning keeps, the spectrum of known signals, pictures and page of made recordings."""
 import base64
 import json
 import pathlib

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of `tilt record`: what is written and what is counted, on made lines and on a board on a pseudo terminal. Run from the repository root
-with build/venv/bin/python."""
+"""Tests of `tilt record`: what is written and what is counted, on made lines and on a board on a pseudo terminal."""
 import contextlib
 import io
 import os

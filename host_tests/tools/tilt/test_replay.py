@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Tests of `tilt replay`: its rows are those of the firmware, which is run natively (build/host/native_replay, made here when it is missing)
-and, where it is built, in the simulator. Run from the repository root with build/venv/bin/python."""
+"""Tests of `tilt replay`: its rows are those of the firmware, which is run natively (build/host/native_replay, made here when it is missing) and,
+where it is built, in the simulator."""
 import contextlib
 import io
 import os

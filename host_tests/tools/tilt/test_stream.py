@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Tests of the reader and writer of streams: docs/protocol.md, "Streams". What is refused is refused in the words of sim/model/stream.c, which
-host_tests/sim/test_stream.c holds to the same texts. Run from the repository root with build/venv/bin/python."""
+host_tests/sim/test_stream.c holds to the same texts."""
 import pathlib
 import sys
 from unittest import mock

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Tests of `tilt tune`: recordings made here by the filters' own model with known R and q, whose estimates must lie within intervals that the
-theory of the likelihood gives (Whittle), and recordings that the model does not fit, for which it may claim nothing. Run from the repository
-root with build/venv/bin/python."""
+theory of the likelihood gives (Whittle), and recordings that the model does not fit, for which it may claim nothing."""
 import json
 import math
 import pathlib
