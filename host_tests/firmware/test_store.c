@@ -88,8 +88,7 @@ static bool judge_boot(int old, uint32_t set)
     }
     store_save(THIRD);
     TEST_ASSERT_FALSE(store_failed());
-    TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-    TEST_ASSERT_TRUE(store_holds(THIRD));
+    store_boots_to(STORE_GOOD, THIRD);
     return is_new;
 }
 
@@ -158,8 +157,7 @@ static void cut_twice(int old, uint32_t first, test_random_t *random)
         TEST_ASSERT_TRUE(store_holds(OTHER) || store_holds(NEW) || (old != NONE && !was_new && store_holds(OLD)));
     }
     store_save(THIRD);
-    TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-    TEST_ASSERT_TRUE(store_holds(THIRD));
+    store_boots_to(STORE_GOOD, THIRD);
 }
 
 TEST(test_supply_cut_in_the_save_after_one_that_was_cut)
@@ -183,8 +181,7 @@ TEST(test_three_hundred_saves_on_end)
     TEST_ASSERT_EQUAL(STORE_EMPTY, store_boot());
     for (uint32_t i = 0; i < 300; i++) {
         store_save(i % 256);
-        TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-        TEST_ASSERT_TRUE(store_holds(i % 256));
+        store_boots_to(STORE_GOOD, i % 256);
         TEST_ASSERT_EQUAL_UINT8(i % 128, store_copy((int)(i % 2))[STORE_AT_SEQUENCE]);
     }
     /* 150 saves each, which open and close it, but the first, which finds it open */
@@ -199,8 +196,7 @@ TEST(test_every_sequence_number)
         for (int later = 0; later < 2; later++) {
             store_forge(later, NEW, STORE_VERSION, (uint8_t)((n + 1) % 128));
             store_forge(1 - later, OLD, STORE_VERSION, (uint8_t)n);
-            TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-            TEST_ASSERT_TRUE(store_holds(NEW));
+            store_boots_to(STORE_GOOD, NEW);
         }
         store_forge(0, OLD, STORE_VERSION, (uint8_t)n);
         TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
@@ -210,8 +206,7 @@ TEST(test_every_sequence_number)
     store_forge(1, NEW, STORE_VERSION, 9);
     (void)store_boot();
     store_save(THIRD);
-    TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-    TEST_ASSERT_TRUE(store_holds(THIRD));
+    store_boots_to(STORE_GOOD, THIRD);
 }
 
 /*
@@ -268,8 +263,7 @@ TEST(test_worn_cell)
         }
         store_save(THIRD);
         TEST_ASSERT_FALSE(store_failed());
-        TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-        TEST_ASSERT_TRUE(store_holds(THIRD));
+        store_boots_to(STORE_GOOD, THIRD);
     }
 }
 
@@ -285,8 +279,7 @@ TEST(test_load_after_a_save_that_failed)
         TEST_ASSERT_EQUAL(STORE_OTHER_COPY, store_load(store_record));
         TEST_ASSERT_FALSE(store_failed());
         store_save(NEW);
-        TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-        TEST_ASSERT_TRUE(store_holds(NEW));
+        store_boots_to(STORE_GOOD, NEW);
     }
 }
 
@@ -306,8 +299,7 @@ TEST(test_image_that_changes_during_a_save)
             store_record[place] ^= 0x10u;
             store_finish();
             TEST_ASSERT_TRUE(store_failed());
-            TEST_ASSERT_EQUAL(STORE_OTHER_COPY, store_boot());
-            TEST_ASSERT_TRUE(store_holds(OLD));
+            store_boots_to(STORE_OTHER_COPY, OLD);
         }
     }
 }
@@ -333,8 +325,7 @@ TEST(test_one_byte_at_a_time)
         }
     }
     TEST_ASSERT_FALSE(store_pass());
-    TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-    TEST_ASSERT_TRUE(store_holds(NEW));
+    store_boots_to(STORE_GOOD, NEW);
 }
 
 /* A reset by the watchdog leaves the write under way: it is waited for, and not read before. */

@@ -24,22 +24,16 @@ void setUp(void)
     store_keep(whole);
 }
 
-static void boots_to(store_status_t expected, uint32_t set)
-{
-    TEST_ASSERT_EQUAL(expected, store_boot());
-    TEST_ASSERT_TRUE(expected < STORE_GOOD || store_holds(set));
-}
-
 /* What is left when this copy alone is damaged. */
 static void boots_without(int copy)
 {
-    boots_to(STORE_OTHER_COPY, copy == 0 ? LATEST : OLDER);
+    store_boots_to(STORE_OTHER_COPY, copy == 0 ? LATEST : OLDER);
 }
 
 /* The twin of all that follows: undamaged; and the store seals a copy as another way of reckoning does. */
 TEST(test_undamaged)
 {
-    boots_to(STORE_GOOD, LATEST);
+    store_boots_to(STORE_GOOD, LATEST);
     for (int copy = 0; copy < 2; copy++) {
         store_forge(copy, copy == 0 ? OLDER : LATEST, STORE_VERSION, copy == 0 ? 127 : 0);
     }
@@ -57,7 +51,7 @@ TEST(test_every_byte_of_a_copy_with_every_value)
             }
         }
     }
-    boots_to(STORE_GOOD, LATEST);
+    store_boots_to(STORE_GOOD, LATEST);
 }
 
 enum { WAYS = 24 };
@@ -108,7 +102,7 @@ TEST(test_every_byte_of_one_with_every_byte_of_the_other)
             for (int way = 0; way < WAYS; way++) {
                 store_copy(0)[first] = damaged(store_copy(0)[first], way, &random);
                 store_copy(1)[second] = damaged(store_copy(1)[second], way, &random);
-                boots_to(STORE_DAMAGED, 0);
+                store_boots_to(STORE_DAMAGED, 0);
                 store_put_back(whole);
             }
         }
@@ -128,7 +122,7 @@ TEST(test_every_pair_of_bytes_of_both)
                 bool same = way < 12;
                 damage_two(0, first, second, way, &random);
                 damage_two(1, same ? first : a, same ? second : b, way, &random);
-                boots_to(STORE_DAMAGED, 0);
+                store_boots_to(STORE_DAMAGED, 0);
                 store_put_back(whole);
             }
         }
@@ -175,18 +169,18 @@ TEST(test_contents_of_one_value)
 {
     for (unsigned value = 0; value < 256; value++) {
         memset(hal_host_eeprom(), (int)value, HAL_EEPROM_SIZE);
-        boots_to(value == 0xFF ? STORE_EMPTY : STORE_DAMAGED, 0);
+        store_boots_to(value == 0xFF ? STORE_EMPTY : STORE_DAMAGED, 0);
     }
 }
 
 TEST(test_one_copy_never_written)
 {
     memset(store_copy(0), 0xFF, STORE_RECORD_SIZE);
-    boots_to(STORE_GOOD, LATEST);
+    store_boots_to(STORE_GOOD, LATEST);
     store_copy(1)[3] ^= 1u;
-    boots_to(STORE_DAMAGED, 0);
+    store_boots_to(STORE_DAMAGED, 0);
     store_save(OLDER);
-    boots_to(STORE_GOOD, OLDER);
+    store_boots_to(STORE_GOOD, OLDER);
 }
 
 /* Damaged, then saved: whole again after one save where one was damaged, after two where both were. */
@@ -197,31 +191,31 @@ TEST(test_a_save_heals)
         store_copy(copy)[STORE_AT_MARK] ^= 4u;
         (void)store_boot();
         store_save(99);
-        boots_to(STORE_GOOD, 99);
+        store_boots_to(STORE_GOOD, 99);
     }
     store_copy(0)[0] ^= 4u;
     store_copy(1)[0] ^= 4u;
-    boots_to(STORE_DAMAGED, 0);
+    store_boots_to(STORE_DAMAGED, 0);
     store_save(98);
-    boots_to(STORE_OTHER_COPY, 98);
+    store_boots_to(STORE_OTHER_COPY, 98);
     store_save(97);
-    boots_to(STORE_GOOD, 97);
+    store_boots_to(STORE_GOOD, 97);
 }
 
 /* Another version is told when a copy of it is whole, and never when it only looks like it. Ours comes first. */
 TEST(test_other_version)
 {
     store_forge(0, OLDER, STORE_VERSION + 1, 127);
-    boots_to(STORE_GOOD, LATEST);
+    store_boots_to(STORE_GOOD, LATEST);
     store_forge(1, LATEST, STORE_VERSION + 1, 0);
-    boots_to(STORE_OTHER_VERSION, 0);
+    store_boots_to(STORE_OTHER_VERSION, 0);
     store_copy(1)[STORE_AT_VERSION] = STORE_VERSION;
-    boots_to(STORE_OTHER_VERSION, 0);
+    store_boots_to(STORE_OTHER_VERSION, 0);
     store_copy(0)[STORE_AT_VERSION] = STORE_VERSION + 3;
-    boots_to(STORE_DAMAGED, 0);
+    store_boots_to(STORE_DAMAGED, 0);
     store_forge(0, OLDER, STORE_VERSION, 50);
     store_forge(1, LATEST, STORE_VERSION + 1, 51);
-    boots_to(STORE_GOOD, OLDER);
+    store_boots_to(STORE_GOOD, OLDER);
 }
 
 /* Records of another size: whatever it says of itself, what stands where we look is not ours. */
@@ -231,7 +225,7 @@ TEST(test_other_size)
         store_put_back(whole);
         if (mark != STORE_IMAGE_SIZE) {
             store_copy(1)[STORE_AT_MARK] = (uint8_t)mark;
-            boots_to(STORE_OTHER_COPY, OLDER);
+            store_boots_to(STORE_OTHER_COPY, OLDER);
         }
     }
 }
