@@ -5,7 +5,7 @@
 #include "hal_host.h"
 #include "hal_i2c.h"
 #include "support/rig.h"
-#include "unity.h"
+#include "support/test.h"
 
 /* START, address, register, repeated START, address, two bytes, six of data, two more. */
 enum { FIRST_DATA_EVENT = 7, EVENTS_PER_BURST = 15 };
@@ -18,12 +18,7 @@ void setUp(void)
     rig.limit_us = UINT32_MAX; /* each test says what it may be */
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
-static void test_configures_as_designed(void)
+TEST(test_configures_as_designed)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(50);
@@ -36,7 +31,7 @@ static void test_configures_as_designed(void)
     TEST_ASSERT_EQUAL_HEX8(0x08, hal_host_sensor.reg[ADXL345_POWER_CTL]);
 }
 
-static void test_rates_and_ranges_reach_the_registers(void)
+TEST(test_rates_and_ranges_reach_the_registers)
 {
     static const struct {
         uint16_t rate_dhz;
@@ -59,7 +54,7 @@ static void test_rates_and_ranges_reach_the_registers(void)
 }
 
 /* DATA_FORMAT's bit 7 (p. 26), in every reading too; the sensor keeps it over a reset of the MCU, and it is cleared. */
-static void test_self_test_is_set_and_cleared(void)
+TEST(test_self_test_is_set_and_cleared)
 {
     static const adxl345_config_t with_force = { 1000, 16, true, 0 };
     static const adxl345_part_t unmoved = { { 1.0, 1.0, 1.0 }, { 0, 0, 0 }, { 0, 0, 0 } }; /* as the rig checks */
@@ -78,7 +73,7 @@ static void test_self_test_is_set_and_cleared(void)
 }
 
 /* Without SELF_TEST the configuration is not what was asked for: READ_BACK, never streaming. */
-static void test_a_self_test_bit_that_is_not_kept_is_found(void)
+TEST(test_a_self_test_bit_that_is_not_kept_is_found)
 {
     static const adxl345_config_t with_force = { 1000, 16, true, 0 };
     adxl345_start(&at_100_hz);
@@ -90,7 +85,7 @@ static void test_a_self_test_bit_that_is_not_kept_is_found(void)
     hal_host_faults.write_lost_register = 0;
 }
 
-static void test_refuses_rates_and_ranges_the_chip_lacks(void)
+TEST(test_refuses_rates_and_ranges_the_chip_lacks)
 {
     static const adxl345_config_t wrong[] = { { 0, 16, false, 0 },     { 124, 16, false, 0 },   { 1001, 16, false, 0 },
                                               { 16000, 16, false, 0 }, { 32000, 16, false, 0 }, { 1000, 0, false, 0 },
@@ -100,7 +95,7 @@ static void test_refuses_rates_and_ranges_the_chip_lacks(void)
     }
 }
 
-static void test_stamps_are_those_of_data_ready(void)
+TEST(test_stamps_are_those_of_data_ready)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(2000);
@@ -109,7 +104,7 @@ static void test_stamps_are_those_of_data_ready(void)
     TEST_ASSERT_UINT32_WITHIN(1, 10000, adxl345_period_us());
 }
 
-static void test_finds_the_alternate_address(void)
+TEST(test_finds_the_alternate_address)
 {
     hal_host_sensor.address = 0x1D;
     adxl345_start(&at_100_hz);
@@ -118,7 +113,7 @@ static void test_finds_the_alternate_address(void)
     TEST_ASSERT_EQUAL_HEX8(0x1D, adxl345_address());
 }
 
-static void test_no_sensor_is_named_and_comes_back(void)
+TEST(test_no_sensor_is_named_and_comes_back)
 {
     adxl345_model_power(&hal_host_sensor, false);
     adxl345_start(&at_100_hz);
@@ -130,7 +125,7 @@ static void test_no_sensor_is_named_and_comes_back(void)
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
 }
 
-static void test_wrong_identity_is_named(void)
+TEST(test_wrong_identity_is_named)
 {
     hal_host_faults.id_wrong = true;
     adxl345_start(&at_100_hz);
@@ -140,7 +135,7 @@ static void test_wrong_identity_is_named(void)
     TEST_ASSERT_EQUAL_HEX8(0x53, adxl345_foreign_address());
 }
 
-static void test_register_that_does_not_keep_its_value_is_named(void)
+TEST(test_register_that_does_not_keep_its_value_is_named)
 {
     hal_host_faults.write_lost_register = ADXL345_BW_RATE;
     static const adxl345_config_t at_400_hz = { 4000, 16, false, 0 };
@@ -152,7 +147,7 @@ static void test_register_that_does_not_keep_its_value_is_named(void)
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
 
-static void test_silent_int1_is_named(void)
+TEST(test_silent_int1_is_named)
 {
     hal_host_faults.int1_cut = true;
     adxl345_start(&at_100_hz);
@@ -164,7 +159,7 @@ static void test_silent_int1_is_named(void)
 }
 
 /* A reset in the middle of a read leaves the sensor holding SDA until it has been clocked through its byte. */
-static void test_slave_hung_in_a_byte_is_clocked_free(void)
+TEST(test_slave_hung_in_a_byte_is_clocked_free)
 {
     hal_host_faults.hang_clocks = 9;
     adxl345_start(&at_100_hz);
@@ -176,7 +171,7 @@ static void test_slave_hung_in_a_byte_is_clocked_free(void)
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
 
-static void test_sensor_power_cycle_is_noticed(void)
+TEST(test_sensor_power_cycle_is_noticed)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(500);
@@ -191,7 +186,7 @@ static void test_sensor_power_cycle_is_noticed(void)
 }
 
 /* The classic: the UNO was reset, the sensor was not. INT1 has been high for long and no edge will come. */
-static void test_latched_int1_after_an_mcu_reset(void)
+TEST(test_latched_int1_after_an_mcu_reset)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(500);
@@ -210,7 +205,7 @@ static void test_latched_int1_after_an_mcu_reset(void)
 }
 
 /* Main stalls for 300 ms: 30 samples wait, 7 in the queue, the rest in the FIFO; none is lost, stamps within 1 %. */
-static void test_late_reads_are_drained_with_interpolated_stamps(void)
+TEST(test_late_reads_are_drained_with_interpolated_stamps)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(1000);
@@ -256,7 +251,7 @@ static void disturb_bursts(unsigned first_event, unsigned end_event)
 }
 
 /* Before the first data byte the sample is still in the sensor: it is read again with the stamp of its edge. */
-static void test_disturbed_before_the_data_nothing_is_lost(void)
+TEST(test_disturbed_before_the_data_nothing_is_lost)
 {
     disturb_bursts(0, FIRST_DATA_EVENT);
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
@@ -264,7 +259,7 @@ static void test_disturbed_before_the_data_nothing_is_lost(void)
 }
 
 /* A burst cut inside its data takes the entry out of the FIFO (p. 21): that sample is lost, no other; none is wrong. */
-static void test_disturbed_inside_the_data_loses_that_sample_only(void)
+TEST(test_disturbed_inside_the_data_loses_that_sample_only)
 {
     disturb_bursts(FIRST_DATA_EVENT, EVENTS_PER_BURST);
     size_t faults = sizeof disturbances * (EVENTS_PER_BURST - FIRST_DATA_EVENT);
@@ -272,7 +267,7 @@ static void test_disturbed_inside_the_data_loses_that_sample_only(void)
 }
 
 /* A change of rate at any phase of a burst delivers what was latched before and after. */
-static void test_rate_change_at_every_phase(void)
+TEST(test_rate_change_at_every_phase)
 {
     static const uint16_t rates[] = { 1000, 4000, 2000, 8000 };
     adxl345_start(&at_100_hz);
@@ -286,7 +281,7 @@ static void test_rate_change_at_every_phase(void)
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
 }
 
-static void test_stop_delivers_the_last_samples_and_stands_by(void)
+TEST(test_stop_delivers_the_last_samples_and_stands_by)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(333);
@@ -295,29 +290,4 @@ static void test_stop_delivers_the_last_samples_and_stands_by(void)
     adxl345_start(&at_100_hz);
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_configures_as_designed);
-    RUN_TEST(test_rates_and_ranges_reach_the_registers);
-    RUN_TEST(test_self_test_is_set_and_cleared);
-    RUN_TEST(test_a_self_test_bit_that_is_not_kept_is_found);
-    RUN_TEST(test_refuses_rates_and_ranges_the_chip_lacks);
-    RUN_TEST(test_stamps_are_those_of_data_ready);
-    RUN_TEST(test_finds_the_alternate_address);
-    RUN_TEST(test_no_sensor_is_named_and_comes_back);
-    RUN_TEST(test_wrong_identity_is_named);
-    RUN_TEST(test_register_that_does_not_keep_its_value_is_named);
-    RUN_TEST(test_silent_int1_is_named);
-    RUN_TEST(test_slave_hung_in_a_byte_is_clocked_free);
-    RUN_TEST(test_sensor_power_cycle_is_noticed);
-    RUN_TEST(test_latched_int1_after_an_mcu_reset);
-    RUN_TEST(test_late_reads_are_drained_with_interpolated_stamps);
-    RUN_TEST(test_disturbed_before_the_data_nothing_is_lost);
-    RUN_TEST(test_disturbed_inside_the_data_loses_that_sample_only);
-    RUN_TEST(test_rate_change_at_every_phase);
-    RUN_TEST(test_stop_delivers_the_last_samples_and_stands_by);
-    return UNITY_END();
 }

@@ -15,7 +15,7 @@
 #include "support/board.h"
 #include "support/documented_limits.h"
 #include "support/rig.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { PERIOD_MS = 10 };
 
@@ -42,11 +42,6 @@ void setUp(void)
     rig.limit_us = UINT32_MAX; /* each test says what it may be */
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 static void stream_for_ms(double ms)
 {
     rig_stream_ms(&at_100_hz, ms);
@@ -67,7 +62,7 @@ static void transfer_without_end(void)
 }
 
 /* No line can be named. The first two are made again, the third is a fault. */
-static void test_three_transfers_without_end_on_free_lines_are_a_fault_of_the_bus(void)
+TEST(test_three_transfers_without_end_on_free_lines_are_a_fault_of_the_bus)
 {
     for (unsigned times = 1; times <= 3; times++) {
         adxl345_counters_t before;
@@ -92,7 +87,7 @@ static void test_three_transfers_without_end_on_free_lines_are_a_fault_of_the_bu
  * INT1 is silent, and the STOP of the burst by the clock does not get out: for a while, and until the next sample is
  * due, when the bus is taken over. No sample is lost.
  */
-static void test_stop_holds_up_the_reading_by_the_clock(void)
+TEST(test_stop_holds_up_the_reading_by_the_clock)
 {
     for (int comes_out = 0; comes_out <= 1; comes_out++) {
         adxl345_counters_t before;
@@ -124,7 +119,7 @@ static void test_stop_holds_up_the_reading_by_the_clock(void)
 }
 
 /* What is asked while samples are fetched after a change of settings waits for them; the last of it counts. */
-static void test_commands_while_samples_are_fetched(void)
+TEST(test_commands_while_samples_are_fetched)
 {
     for (int stops = 0; stops <= 1; stops++) {
         setUp();
@@ -150,7 +145,7 @@ static void test_commands_while_samples_are_fetched(void)
 }
 
 /* A read that fails where its sample had no edge of its own: it is read again, with the time that follows the last. */
-static void test_failed_read_of_a_sample_that_had_waited(void)
+TEST(test_failed_read_of_a_sample_that_had_waited)
 {
     for (unsigned skip = 0; skip < 5; skip++) { /* START, address, register, START, address: no data asked yet */
         setUp();
@@ -175,7 +170,7 @@ static void test_failed_read_of_a_sample_that_had_waited(void)
 }
 
 /* A bit of the count arrives wrong: samples that wait behind would put this one before the last, which cannot be. */
-static void test_count_with_a_wrong_bit_moves_no_stamp(void)
+TEST(test_count_with_a_wrong_bit_moves_no_stamp)
 {
     for (unsigned bit = 1; bit < 6; bit++) {
         setUp();
@@ -190,7 +185,7 @@ static void test_count_with_a_wrong_bit_moves_no_stamp(void)
 }
 
 /* The sensor has none and is not waited for any more, but INT1 rises just then: one more look before it is a fault. */
-static void test_int1_that_rises_while_the_sensor_says_it_has_none(void)
+TEST(test_int1_that_rises_while_the_sensor_says_it_has_none)
 {
     double told_ms[2] = { 0.0 };
     for (int rises = 0; rises <= 1; rises++) {
@@ -214,7 +209,7 @@ static void test_int1_that_rises_while_the_sensor_says_it_has_none(void)
 }
 
 /* The sensor goes while what it holds is fetched: each try fails, hundreds of them, and the stop comes all the same. */
-static void test_stop_while_every_read_fails(void)
+TEST(test_stop_while_every_read_fails)
 {
     stream_for_ms(205);
     rig.leaves = true;
@@ -237,7 +232,7 @@ static void test_stop_while_every_read_fails(void)
 }
 
 /* Main leaves them: seven of the eight slots fill one by one, in order, and what comes then waits in the sensor. */
-static void test_the_queue_holds_seven_samples(void)
+TEST(test_the_queue_holds_seven_samples)
 {
     enum { SLOTS = 8 };
     stream_for_ms(205);
@@ -261,7 +256,7 @@ static void test_the_queue_holds_seven_samples(void)
 }
 
 /* Main's second access, and a read by the clock, before the first access has ended: refused; the first one counts. */
-static void test_one_access_at_a_time(void)
+TEST(test_one_access_at_a_time)
 {
     adxl345_burst_init();
     (void)adxl345_burst_take_bus(ADXL345_ADDRESS_LOW, false);
@@ -278,7 +273,7 @@ static void test_one_access_at_a_time(void)
 }
 
 /* A line that was stuck and then flickers is open, not shorted: one good reading takes "stuck" back. */
-static void test_a_stuck_int1_that_flickers_is_stuck_no_more(void)
+TEST(test_a_stuck_int1_that_flickers_is_stuck_no_more)
 {
     stream_for_ms(300);
     rig_until_pause();
@@ -296,7 +291,7 @@ static void test_a_stuck_int1_that_flickers_is_stuck_no_more(void)
 }
 
 /* After a stop an edge begins nothing; one that came then is not the time of the first sample of the next start. */
-static void test_an_edge_while_stopped_is_nobodys(void)
+TEST(test_an_edge_while_stopped_is_nobodys)
 {
     stream_for_ms(300);
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(50));
@@ -310,21 +305,4 @@ static void test_an_edge_while_stopped_is_nobodys(void)
     size_t before = rig.taken_count;
     adxl345_start(&at_100_hz);
     rig_until_taken(before + 1);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_three_transfers_without_end_on_free_lines_are_a_fault_of_the_bus);
-    RUN_TEST(test_stop_holds_up_the_reading_by_the_clock);
-    RUN_TEST(test_commands_while_samples_are_fetched);
-    RUN_TEST(test_failed_read_of_a_sample_that_had_waited);
-    RUN_TEST(test_count_with_a_wrong_bit_moves_no_stamp);
-    RUN_TEST(test_int1_that_rises_while_the_sensor_says_it_has_none);
-    RUN_TEST(test_stop_while_every_read_fails);
-    RUN_TEST(test_the_queue_holds_seven_samples);
-    RUN_TEST(test_one_access_at_a_time);
-    RUN_TEST(test_a_stuck_int1_that_flickers_is_stuck_no_more);
-    RUN_TEST(test_an_edge_while_stopped_is_nobodys);
-    return UNITY_END();
 }

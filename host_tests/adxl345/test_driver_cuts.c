@@ -13,7 +13,7 @@
 #include "hal_time.h"
 #include "support/board.h"
 #include "support/rig.h"
-#include "unity.h"
+#include "support/test.h"
 
 /* START, address, register, repeated START, address, INT_SOURCE, DATA_FORMAT, six of data, FIFO_CTL, FIFO_STATUS. */
 enum { FIRST_DATA_EVENT = 7, EVENTS_PER_BURST = 15 };
@@ -33,11 +33,6 @@ void setUp(void)
     begin(100.0);
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 static void disturb(unsigned event, uint8_t status)
 {
     hal_host_faults.status_skip = event;
@@ -49,7 +44,7 @@ static void disturb(unsigned event, uint8_t status)
  * would read another register, or more bytes than there is room for. Before the data nothing is lost, inside one
  * sample.
  */
-static void test_no_status_at_any_event_makes_a_wrong_sample(void)
+TEST(test_no_status_at_any_event_makes_a_wrong_sample)
 {
     static const uint8_t right[EVENTS_PER_BURST] = { 0x08, 0x18, 0x28, 0x10, 0x40, 0x50, 0x50, 0x50,
                                                      0x50, 0x50, 0x50, 0x50, 0x50, 0x50, 0x58 };
@@ -99,7 +94,7 @@ static void cut_with_more_in_the_fifo(const adxl345_config_t *config, unsigned w
     TEST_ASSERT_EQUAL_size_t(event > FIRST_DATA_EVENT ? 1 : 0, rig_lost(60));
 }
 
-static void test_what_follows_a_sample_that_was_cut_has_its_own_time(void)
+TEST(test_what_follows_a_sample_that_was_cut_has_its_own_time)
 {
     for (unsigned waiting = 1; waiting < 6; waiting++) {
         for (unsigned event = 0; event < EVENTS_PER_BURST; event++) {
@@ -109,7 +104,7 @@ static void test_what_follows_a_sample_that_was_cut_has_its_own_time(void)
 }
 
 /* A burst that hangs is given up after 3 ms: at 800 Hz other samples wait by then. */
-static void test_what_follows_a_burst_that_hung_has_its_own_time(void)
+TEST(test_what_follows_a_burst_that_hung_has_its_own_time)
 {
     unsigned inside = 0;
     for (unsigned phase = 0; phase < 24; phase++) {
@@ -132,7 +127,7 @@ static void test_what_follows_a_burst_that_hung_has_its_own_time(void)
 }
 
 /* Stops at every 0.2 ms of the way back from a fault: what is stopped has no fault. */
-static void test_stop_at_any_moment_of_a_recovery_leaves_no_fault(void)
+TEST(test_stop_at_any_moment_of_a_recovery_leaves_no_fault)
 {
     unsigned quiesced = 0;
     for (unsigned phase = 0; phase < 400; phase++) {
@@ -156,7 +151,7 @@ static void test_stop_at_any_moment_of_a_recovery_leaves_no_fault(void)
 }
 
 /* SDA or SCL comes off while the supply stays and INT1 is high: nobody answers, which is not a disturbed bus. */
-static void test_wires_off_with_int1_high_are_a_missing_sensor(void)
+TEST(test_wires_off_with_int1_high_are_a_missing_sensor)
 {
     for (unsigned phase = 0; phase < 4; phase++) {
         begin(100.0);
@@ -203,7 +198,7 @@ static void until_a_burst_behind_the_last_refused_one(void)
     TEST_ASSERT_EQUAL(I2C_BUS_BUSY, adxl345_burst_bus_state());
 }
 
-static void test_a_burst_behind_the_last_refused_one_does_not_hide_it(void)
+TEST(test_a_burst_behind_the_last_refused_one_does_not_hide_it)
 {
     adxl345_counters_t before;
     adxl345_counters_t after;
@@ -235,7 +230,7 @@ static void until_the_sensor_is_asked(void)
 }
 
 /* The supply fails before or inside the answer: what is read are ones, and no sign that data are ready. */
-static void test_a_sensor_lost_while_it_is_asked_has_no_data(void)
+TEST(test_a_sensor_lost_while_it_is_asked_has_no_data)
 {
     unsigned cut = 0;
     for (unsigned phase = 0; phase < 20; phase++) {
@@ -253,7 +248,7 @@ static void test_a_sensor_lost_while_it_is_asked_has_no_data(void)
 }
 
 /* INT1 comes back while the sensor is asked, and a stop or another rate with it: first what the FIFO holds. */
-static void test_stop_and_start_while_the_sensor_is_asked_deliver_first(void)
+TEST(test_stop_and_start_while_the_sensor_is_asked_deliver_first)
 {
     for (unsigned phase = 0; phase < 8; phase++) {
         until_the_sensor_is_asked();
@@ -293,7 +288,7 @@ static uint8_t neighbour_id(uint8_t reg, uint8_t byte)
 }
 
 /* Another device answers at the other address, always: the sensor is found, lost, and found again. */
-static void test_a_neighbour_does_not_keep_the_sensor_out(void)
+TEST(test_a_neighbour_does_not_keep_the_sensor_out)
 {
     static const uint8_t addresses[] = { ADXL345_ADDRESS_LOW, ADXL345_ADDRESS_HIGH };
     for (size_t i = 0; i < 2; i++) {
@@ -313,19 +308,4 @@ static void test_a_neighbour_does_not_keep_the_sensor_out(void)
             TEST_ASSERT_EQUAL_HEX8(NEIGHBOUR_ID, adxl345_foreign_id());
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_neighbour_does_not_keep_the_sensor_out);
-    RUN_TEST(test_no_status_at_any_event_makes_a_wrong_sample);
-    RUN_TEST(test_what_follows_a_sample_that_was_cut_has_its_own_time);
-    RUN_TEST(test_what_follows_a_burst_that_hung_has_its_own_time);
-    RUN_TEST(test_stop_at_any_moment_of_a_recovery_leaves_no_fault);
-    RUN_TEST(test_wires_off_with_int1_high_are_a_missing_sensor);
-    RUN_TEST(test_a_burst_behind_the_last_refused_one_does_not_hide_it);
-    RUN_TEST(test_a_sensor_lost_while_it_is_asked_has_no_data);
-    RUN_TEST(test_stop_and_start_while_the_sensor_is_asked_deliver_first);
-    return UNITY_END();
 }

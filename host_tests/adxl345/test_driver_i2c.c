@@ -9,7 +9,7 @@
 #include "support/board.h"
 #include "support/documented_limits.h"
 #include "support/rig.h"
-#include "unity.h"
+#include "support/test.h"
 
 static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
 static uint8_t spoilt_reg;      /* slow wires: a one of it reads as zero at 363.6 kHz, */
@@ -42,11 +42,6 @@ void setUp(void)
     asked = 0;
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 static const adxl345_i2c_t speeds[] = { ADXL345_I2C_FALLS_BACK, ADXL345_I2C_100_KHZ, ADXL345_I2C_364_KHZ };
 
 static void begin_at(uint16_t rate_dhz, adxl345_i2c_t speed)
@@ -75,7 +70,7 @@ static uint32_t burst_us(void)
  * 400 kHz, which 800 Hz needs and no other rate gets (data sheet p. 18), 297.5 us, at 100 kHz, up to 200 Hz, 1190.
  * Main's pass takes 20 us here. Nothing is lost at any rate.
  */
-static void test_a_burst_takes_the_time_of_its_bits(void)
+TEST(test_a_burst_takes_the_time_of_its_bits)
 {
     static const uint16_t rates_dhz[] = { 125, 250, 500, 1000, 2000, 4000, 8000 };
     for (size_t s = 0; s < sizeof speeds / sizeof speeds[0]; s++) {
@@ -94,7 +89,7 @@ static void test_a_burst_takes_the_time_of_its_bits(void)
 }
 
 /* Ones that are late: in the identity, in a register that is read back, in the frame of a reading. */
-static void test_slow_wires_get_a_slow_clock(void)
+TEST(test_slow_wires_get_a_slow_clock)
 {
     static const struct {
         uint8_t reg, bits;
@@ -119,7 +114,7 @@ static void test_slow_wires_get_a_slow_clock(void)
 }
 
 /* It stays slow until another speed is set; 400 Hz gets 363.6 kHz all the same, which the fault outlasts. */
-static void test_a_slow_clock_stays_until_another_is_set(void)
+TEST(test_a_slow_clock_stays_until_another_is_set)
 {
     static const adxl345_config_t at_400_hz = { 4000, 16, false, 0 };
     foreign = LIMIT_GARBLED;
@@ -143,7 +138,7 @@ static void test_a_slow_clock_stays_until_another_is_set(void)
 }
 
 /* Sixteen faults; sixteen more, and the faster one is tried again. A speed that was asked for stays. */
-static void test_the_clock_changes_after_sixteen_faults(void)
+TEST(test_the_clock_changes_after_sixteen_faults)
 {
     for (unsigned faults = 0; faults <= 3 * LIMIT_GARBLED; faults++) {
         for (size_t s = 0; s < sizeof speeds / sizeof speeds[0]; s++) {
@@ -160,7 +155,7 @@ static void test_the_clock_changes_after_sixteen_faults(void)
 }
 
 /* Another part, whose identity has other ones; faults at a rate that has its own clock. */
-static void test_faults_that_a_slower_clock_does_not_cure(void)
+TEST(test_faults_that_a_slower_clock_does_not_cure)
 {
     foreign = 3 * LIMIT_GARBLED;
     foreign_id = 0xE6;
@@ -175,7 +170,7 @@ static void test_faults_that_a_slower_clock_does_not_cure(void)
 }
 
 /* A sensor that is not there, or lines that are held low, say nothing about the clock. */
-static void test_other_faults_leave_the_clock(void)
+TEST(test_other_faults_leave_the_clock)
 {
     begin_at(1000, ADXL345_I2C_FALLS_BACK);
     rig_run_ms(300);
@@ -189,16 +184,4 @@ static void test_other_faults_leave_the_clock(void)
     rig_run_ms(300);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
     TEST_ASSERT_FALSE(slow());
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_burst_takes_the_time_of_its_bits);
-    RUN_TEST(test_slow_wires_get_a_slow_clock);
-    RUN_TEST(test_a_slow_clock_stays_until_another_is_set);
-    RUN_TEST(test_faults_that_a_slower_clock_does_not_cure);
-    RUN_TEST(test_the_clock_changes_after_sixteen_faults);
-    RUN_TEST(test_other_faults_leave_the_clock);
-    return UNITY_END();
 }

@@ -12,7 +12,7 @@
 #include "hal_time.h"
 #include "support/documented_limits.h"
 #include "support/rig.h"
-#include "unity.h"
+#include "support/test.h"
 
 static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
 
@@ -38,18 +38,11 @@ static void stall_ms(double ms)
     }
 }
 
-void setUp(void) {}
-
-void tearDown(void)
-{
-    rig_end();
-}
-
 /*
  * D2 held high: every sample comes once, with a time as near as the reads are apart (a burst and a pass), and the fault
  * has its name; when D2 is free again it is over.
  */
-static void test_int1_stuck_high(void)
+TEST(test_int1_stuck_high)
 {
     static const uint16_t rates_dhz[] = { 125, 250, 500, 1000, 2000, 4000, 8000 };
     for (unsigned r = 0; r < 7; r++) {
@@ -78,7 +71,7 @@ static void test_int1_stuck_high(void)
 }
 
 /* D2 is free again: the 32nd good reading that leaves INT1 low ends the fault, none before. */
-static void test_int1_is_trusted_again_after_32_good_readings(void)
+TEST(test_int1_is_trusted_again_after_32_good_readings)
 {
     stream_for_ms(300);
     rig.limit_us = 500;
@@ -99,7 +92,7 @@ static void test_int1_is_trusted_again_after_32_good_readings(void)
 }
 
 /* The clock of the sensor is 9 % slower or faster than was measured: the times keep up with the samples. */
-static void test_times_follow_while_int1_is_stuck(void)
+TEST(test_times_follow_while_int1_is_stuck)
 {
     for (int percent = -9; percent <= 9; percent += 18) {
         stream_for_ms(300);
@@ -113,7 +106,7 @@ static void test_times_follow_while_int1_is_stuck(void)
 }
 
 /* The same from the start, so that the period is never measured, with a sensor that is 5 % slow. */
-static void test_times_of_a_slow_sensor_follow_while_int1_is_stuck(void)
+TEST(test_times_of_a_slow_sensor_follow_while_int1_is_stuck)
 {
     static const adxl345_config_t at_12_5_hz = { 125, 16, false, 0 };
     rig_begin(12.5, (hal_host_config_t){ .ppm = -50000.0 });
@@ -126,7 +119,7 @@ static void test_times_of_a_slow_sensor_follow_while_int1_is_stuck(void)
 }
 
 /* INT1 was stuck once and is well; it falls silent now: the first sample read by the clock has its own time. */
-static void test_an_int1_that_was_stuck_once_moves_no_later_stamp(void)
+TEST(test_an_int1_that_was_stuck_once_moves_no_later_stamp)
 {
     stream_for_ms(300);
     rig.limit_us = 1100; /* by the clock: a millisecond between two looks, and a burst */
@@ -146,7 +139,7 @@ static void test_an_int1_that_was_stuck_once_moves_no_later_stamp(void)
 }
 
 /* D2 is high for ever and the sensor measures no more: that is what is told. */
-static void test_int1_stuck_high_on_a_sensor_without_data(void)
+TEST(test_int1_stuck_high_on_a_sensor_without_data)
 {
     stream_for_ms(300);
     rig.limit_us = 500;
@@ -164,7 +157,7 @@ static void test_int1_stuck_high_on_a_sensor_without_data(void)
 }
 
 /* What the sensor still shows of before a reset of the MCU is no sample, however high INT1 is. */
-static void test_what_was_shown_before_the_first_sample_is_none(void)
+TEST(test_what_was_shown_before_the_first_sample_is_none)
 {
     stream_for_ms(305);
     TEST_ASSERT_TRUE(rig.last_x > 8);
@@ -180,7 +173,7 @@ static void test_what_was_shown_before_the_first_sample_is_none(void)
 }
 
 /* Edges for nothing, with INT1 still high when they are looked at, at many phases: no sample comes twice. */
-static void test_edges_for_nothing_bring_no_sample(void)
+TEST(test_edges_for_nothing_bring_no_sample)
 {
     stream_for_ms(300);
     rig.limit_us = 500;
@@ -202,7 +195,7 @@ static void test_edges_for_nothing_bring_no_sample(void)
  * INT1 goes high for nothing shortly before a sample, of a sensor that is 5 % slow and not
  * measured yet: one nominal period after the last sample it had none, so the new one is not that old.
  */
-static void test_a_sample_is_not_older_than_the_sensor_was_empty(void)
+TEST(test_a_sample_is_not_older_than_the_sensor_was_empty)
 {
     static const adxl345_config_t at_12_5_hz = { 125, 16, false, 0 };
     unsigned met_empty = 0;
@@ -232,7 +225,7 @@ static void test_a_sample_is_not_older_than_the_sensor_was_empty(void)
 }
 
 /* An edge whose level is gone puts nothing on the bus, and leaves no time for another sample. */
-static void test_edges_without_a_level_are_noise(void)
+TEST(test_edges_without_a_level_are_noise)
 {
     stream_for_ms(300);
     for (unsigned i = 0; i < 300; i++) {
@@ -261,7 +254,7 @@ static void run_until_tick(void)
 enum { DEAF_TICKS = (1000 * LIMIT_DEAF_MS - 1) / (int)HAL_TICK_US + 2 };
 
 /* Eight edges in a tick of the clock may be: seven of a sensor at 800 Hz, and one. The ninth is not heard any more. */
-static void test_nine_edges_in_a_tick_flicker(void)
+TEST(test_nine_edges_in_a_tick_flicker)
 {
     static const adxl345_config_t at_12_5_hz = { 125, 16, false, 0 };
     rig_begin(12.5, (hal_host_config_t){ 0 });
@@ -285,7 +278,7 @@ static void test_nine_edges_in_a_tick_flicker(void)
 }
 
 /* In the tick in which they are counted again so many edges make it flicker on, one less ends that. */
-static void test_eight_edges_are_too_many_to_be_believed_again(void)
+TEST(test_eight_edges_are_too_many_to_be_believed_again)
 {
     for (unsigned count = LIMIT_EDGES_AGAIN - 1; count <= LIMIT_EDGES_AGAIN + 1; count++) {
         stream_for_ms(300);
@@ -302,7 +295,7 @@ static void test_eight_edges_are_too_many_to_be_believed_again(void)
 }
 
 /* A wire off D2 picks up a noise of 250 kHz: every sample comes once, read by the clock, and the fault has its name. */
-static void test_an_int1_that_flickers_is_not_heard(void)
+TEST(test_an_int1_that_flickers_is_not_heard)
 {
     static const uint16_t rates_dhz[] = { 125, 1000, 8000 };
     for (unsigned r = 0; r < 3; r++) {
@@ -331,7 +324,7 @@ static void test_an_int1_that_flickers_is_not_heard(void)
 }
 
 /* Main stalls for longer than the FIFO is deep: lost samples are counted, and the rest keep their time. */
-static void test_overruns_are_counted(void)
+TEST(test_overruns_are_counted)
 {
     adxl345_readings_t readings;
     stream_for_ms(300);
@@ -351,7 +344,7 @@ static void test_overruns_are_counted(void)
 }
 
 /* INT1 comes back to a main that did not look for a while: the sample that the edge brings is older than the edge. */
-static void test_int1_comes_back_to_a_full_sensor(void)
+TEST(test_int1_comes_back_to_a_full_sensor)
 {
     stream_for_ms(300);
     hal_host_faults.int1_cut = true;
@@ -362,25 +355,4 @@ static void test_int1_comes_back_to_a_full_sensor(void)
     rig_run_ms(300);
     TEST_ASSERT_EQUAL_UINT32(0, hal_host_sensor.overruns);
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_int1_stuck_high);
-    RUN_TEST(test_int1_is_trusted_again_after_32_good_readings);
-    RUN_TEST(test_times_follow_while_int1_is_stuck);
-    RUN_TEST(test_times_of_a_slow_sensor_follow_while_int1_is_stuck);
-    RUN_TEST(test_an_int1_that_was_stuck_once_moves_no_later_stamp);
-    RUN_TEST(test_int1_stuck_high_on_a_sensor_without_data);
-    RUN_TEST(test_what_was_shown_before_the_first_sample_is_none);
-    RUN_TEST(test_edges_for_nothing_bring_no_sample);
-    RUN_TEST(test_a_sample_is_not_older_than_the_sensor_was_empty);
-    RUN_TEST(test_edges_without_a_level_are_noise);
-    RUN_TEST(test_nine_edges_in_a_tick_flicker);
-    RUN_TEST(test_eight_edges_are_too_many_to_be_believed_again);
-    RUN_TEST(test_an_int1_that_flickers_is_not_heard);
-    RUN_TEST(test_overruns_are_counted);
-    RUN_TEST(test_int1_comes_back_to_a_full_sensor);
-    return UNITY_END();
 }

@@ -9,7 +9,7 @@
 #include "hal_host.h"
 #include "hal_time.h"
 #include "support/rig.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { STARTED_MS = 100, PATTERN = 0x8A };
 
@@ -111,11 +111,6 @@ void setUp(void)
     rig.pass = pass;
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 static void start_and_change(change_t what, unsigned at, unsigned by, unsigned bursts)
 {
     setUp();
@@ -138,7 +133,7 @@ static uint16_t failed(void)
 }
 
 /* One burst goes wrong from a byte on: no sample of it comes out, and the sensor goes on as if nothing were. */
-static void test_a_burst_that_goes_wrong_at_any_byte_brings_nothing(void)
+TEST(test_a_burst_that_goes_wrong_at_any_byte_brings_nothing)
 {
     static const change_t changes[] = { ZEROS, ONES };
     for (unsigned c = 0; c < 2; c++) {
@@ -159,7 +154,7 @@ static void test_a_burst_that_goes_wrong_at_any_byte_brings_nothing(void)
     TEST_ASSERT_EQUAL_size_t(1, rig_lost(60));
 }
 
-static void test_supply_lost_at_any_byte_brings_nothing_wrong(void)
+TEST(test_supply_lost_at_any_byte_brings_nothing_wrong)
 {
     for (unsigned at = 0; at < READING_BYTES; at++) {
         start_and_change(POWER_OFF, at, 0, 1);
@@ -173,7 +168,7 @@ static void test_supply_lost_at_any_byte_brings_nothing_wrong(void)
 }
 
 /* A bit more or less than the master clocked, in either level of the line, from any byte on. */
-static void test_bits_that_slip_at_any_byte_bring_nothing(void)
+TEST(test_bits_that_slip_at_any_byte_bring_nothing)
 {
     for (unsigned at = 0; at <= READING_FIFO_CTL; at++) {
         for (unsigned by = 1; by < 8; by++) {
@@ -190,7 +185,7 @@ static void test_bits_that_slip_at_any_byte_bring_nothing(void)
 }
 
 /* Two torn readings in a row are read over; the third is a fault with a name, and the sensor is configured anew. */
-static void test_three_torn_readings_in_a_row_are_a_fault(void)
+TEST(test_three_torn_readings_in_a_row_are_a_fault)
 {
     for (unsigned torn = 1; torn <= 4; torn++) {
         start_and_change(FLIP, READING_FIFO_CTL, 0x40, torn);
@@ -211,7 +206,7 @@ static void test_three_torn_readings_in_a_row_are_a_fault(void)
 }
 
 /* Torn readings with good ones in between are not in a row. */
-static void test_torn_readings_apart_are_no_fault(void)
+TEST(test_torn_readings_apart_are_no_fault)
 {
     start_and_change(FLIP, READING_FIFO_CTL, 0x40, 0);
     for (unsigned i = 0; i < 10; i++) {
@@ -223,7 +218,7 @@ static void test_torn_readings_apart_are_no_fault(void)
 }
 
 /* Registers as after power-on: no silence is awaited, no pause made. 21 accesses of under 0.2 ms, then the turn-on. */
-static void test_a_sensor_that_forgot_is_configured_at_once(void)
+TEST(test_a_sensor_that_forgot_is_configured_at_once)
 {
     start_and_change(FORGOT, 0, 0, 1);
     while (adxl345_fault() == ADXL345_FAULT_NONE) {
@@ -239,7 +234,7 @@ static void test_a_sensor_that_forgot_is_configured_at_once(void)
 }
 
 /* A stop that comes with it stops. */
-static void test_a_stop_while_readings_fail_stops(void)
+TEST(test_a_stop_while_readings_fail_stops)
 {
     for (unsigned b = 1; b < 4; b++) {
         start_and_change(b == 1 ? FORGOT : FLIP, b == 1 ? 0 : READING_FIFO_CTL, 0x40, b);
@@ -254,7 +249,7 @@ static void test_a_stop_while_readings_fail_stops(void)
 }
 
 /* A bit of the running sensor's DATA_FORMAT flips: self-test, resolution, range, justification are not as they were. */
-static void test_a_sensor_whose_format_changes_is_configured_anew(void)
+TEST(test_a_sensor_whose_format_changes_is_configured_anew)
 {
     for (unsigned bit = 0; bit < 8; bit++) {
         start_and_change(NOTHING, 0, 0, 0);
@@ -275,7 +270,7 @@ static void test_a_sensor_whose_format_changes_is_configured_anew(void)
  * the poll looks at the three. The fault finds it on the bus; main stops or starts anew before it has looked: its
  * sample comes all the same if it is whole by then.
  */
-static void test_a_burst_that_ended_well_when_the_bus_is_taken_is_delivered(void)
+TEST(test_a_burst_that_ended_well_when_the_bus_is_taken_is_delivered)
 {
     unsigned ended = 0;
     for (unsigned phase = 0; phase < 60; phase++) {
@@ -309,19 +304,4 @@ static void test_a_burst_that_ended_well_when_the_bus_is_taken_is_delivered(void
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
     }
     TEST_ASSERT_TRUE(ended > 10 && ended < 50);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_sensor_whose_format_changes_is_configured_anew);
-    RUN_TEST(test_a_burst_that_ended_well_when_the_bus_is_taken_is_delivered);
-    RUN_TEST(test_a_burst_that_goes_wrong_at_any_byte_brings_nothing);
-    RUN_TEST(test_supply_lost_at_any_byte_brings_nothing_wrong);
-    RUN_TEST(test_bits_that_slip_at_any_byte_bring_nothing);
-    RUN_TEST(test_three_torn_readings_in_a_row_are_a_fault);
-    RUN_TEST(test_torn_readings_apart_are_no_fault);
-    RUN_TEST(test_a_sensor_that_forgot_is_configured_at_once);
-    RUN_TEST(test_a_stop_while_readings_fail_stops);
-    return UNITY_END();
 }

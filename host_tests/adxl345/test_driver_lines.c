@@ -9,7 +9,7 @@
 #include "hal_host.h"
 #include "hal_time.h"
 #include "support/rig.h"
-#include "unity.h"
+#include "support/test.h"
 
 static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
 static const adxl345_config_t at_800_hz = { 8000, 16, false, 0 };
@@ -43,11 +43,6 @@ void setUp(void)
     begin(100.0);
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 /* Passes until the fault is told, or is over; how long that took. */
 static double ms_until_fault(bool wanted)
 {
@@ -65,7 +60,7 @@ static void hold(adxl345_fault_t line, bool low)
 }
 
 /* A line that is low from the start is seen before any transfer: no deadline is needed. */
-static void test_a_line_low_from_the_start_is_named_at_once(void)
+TEST(test_a_line_low_from_the_start_is_named_at_once)
 {
     for (adxl345_fault_t line = ADXL345_FAULT_SCL_LOW; line <= ADXL345_FAULT_SDA_LOW; line++) {
         begin(100.0);
@@ -83,7 +78,7 @@ static void test_a_line_low_from_the_start_is_named_at_once(void)
 }
 
 /* An SCL that is low is given no clock; for an SDA that stays low 16 are enough, and there is no STOP then. */
-static void test_clocks_by_hand(void)
+TEST(test_clocks_by_hand)
 {
     hold(ADXL345_FAULT_SCL_LOW, true);
     adxl345_start(&at_100_hz);
@@ -104,7 +99,7 @@ static void test_clocks_by_hand(void)
 }
 
 /* The line goes low at every 0.1 ms of 20 ms of streaming: its name within a period and 3.3 ms, and back in time. */
-static void test_a_line_low_while_streaming_is_named(void)
+TEST(test_a_line_low_while_streaming_is_named)
 {
     for (unsigned phase = 0; phase < 400; phase++) {
         adxl345_fault_t line = (phase & 1u) != 0 ? ADXL345_FAULT_SCL_LOW : ADXL345_FAULT_SDA_LOW;
@@ -122,7 +117,7 @@ static void test_a_line_low_while_streaming_is_named(void)
 }
 
 /* At any moment of the way from start to the first sample: 3 ms and main's pass later the driver has given up. */
-static void test_a_line_low_while_configuring_is_named_by_the_deadline(void)
+TEST(test_a_line_low_while_configuring_is_named_by_the_deadline)
 {
     unsigned met = 0;
     for (unsigned phase = 0; phase < 150; phase++) {
@@ -142,7 +137,7 @@ static void test_a_line_low_while_configuring_is_named_by_the_deadline(void)
 }
 
 /* A slave that holds SDA until it has seen so many clocks: up to 16 nobody notices, more take a second clearing. */
-static void test_a_hung_slave_is_freed(void)
+TEST(test_a_hung_slave_is_freed)
 {
     for (uint8_t clocks = 1; clocks <= 32; clocks++) {
         begin(100.0);
@@ -165,7 +160,7 @@ static void test_a_hung_slave_is_freed(void)
 }
 
 /* TWSTO never clears: no interrupt tells it, and no burst can begin. The bus is taken anew, no sample is lost. */
-static void test_a_stop_that_does_not_get_out(void)
+TEST(test_a_stop_that_does_not_get_out)
 {
     for (unsigned phase = 0; phase < 40; phase++) {
         const adxl345_config_t *config = (phase & 1u) != 0 ? &at_800_hz : &at_100_hz;
@@ -196,7 +191,7 @@ static void test_a_stop_that_does_not_get_out(void)
  * At every phase of a burst and of its STOP: the sensor is told to rest as soon as the bus is free, also by a main that
  * leaves the burst's sample in the queue and so has no reason of its own to pass again.
  */
-static void test_a_busy_bus_is_waited_for_no_longer_than_it_is_busy(void)
+TEST(test_a_busy_bus_is_waited_for_no_longer_than_it_is_busy)
 {
     unsigned running = 0;
     for (unsigned i = 0; i < 50; i++) {
@@ -222,7 +217,7 @@ static void test_a_busy_bus_is_waited_for_no_longer_than_it_is_busy(void)
  * Main comes 5 ms late to what a step begins, to its end, or to both: that is no fault of the bus. The limit of the
  * transfer begins when it does.
  */
-static void test_a_late_main_is_no_timeout(void)
+TEST(test_a_late_main_is_no_timeout)
 {
     static const unsigned away[3][3] = { { 1, 250, 1 }, { 250, 1, 250 }, { 250, 250, 250 } };
     for (unsigned way = 0; way < 3; way++) {
@@ -243,7 +238,7 @@ static void test_a_late_main_is_no_timeout(void)
 }
 
 /* INT1 falls silent at any phase: named before the row of the sample that is missed is due, or at 800 Hz after 3 ms. */
-static void test_silent_int1_is_noticed_in_time_for_the_row(void)
+TEST(test_silent_int1_is_noticed_in_time_for_the_row)
 {
     for (size_t r = 0; r < sizeof rates_dhz / sizeof rates_dhz[0]; r++) {
         adxl345_config_t config = { rates_dhz[r], 16, false, 0 };
@@ -268,7 +263,7 @@ static void test_silent_int1_is_noticed_in_time_for_the_row(void)
  * INT1 stays silent: read by the clock for two seconds, at every rate and with a sensor 5 % off. The fault stays told,
  * no sample is lost, doubled or has the time of another; when INT1 is back the fault is over.
  */
-static void test_without_int1_samples_are_read_by_the_clock(void)
+TEST(test_without_int1_samples_are_read_by_the_clock)
 {
     static const double clocks_ppm[] = { -50000.0, 0.0, 50000.0 };
     for (unsigned i = 0; i < 3 * sizeof rates_dhz / sizeof rates_dhz[0]; i++) {
@@ -299,7 +294,7 @@ static void test_without_int1_samples_are_read_by_the_clock(void)
 }
 
 /* A sensor that stops measuring while it is read by the clock: that is no silence of INT1 any more. */
-static void test_without_int1_a_sensor_that_stops_is_noticed(void)
+TEST(test_without_int1_a_sensor_that_stops_is_noticed)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(200);
@@ -316,21 +311,4 @@ static void test_without_int1_a_sensor_that_stops_is_noticed(void)
     hal_host_faults.int1_cut = false;
     rig_run_ms(30);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_line_low_from_the_start_is_named_at_once);
-    RUN_TEST(test_clocks_by_hand);
-    RUN_TEST(test_a_line_low_while_streaming_is_named);
-    RUN_TEST(test_a_line_low_while_configuring_is_named_by_the_deadline);
-    RUN_TEST(test_a_hung_slave_is_freed);
-    RUN_TEST(test_a_stop_that_does_not_get_out);
-    RUN_TEST(test_a_busy_bus_is_waited_for_no_longer_than_it_is_busy);
-    RUN_TEST(test_a_late_main_is_no_timeout);
-    RUN_TEST(test_silent_int1_is_noticed_in_time_for_the_row);
-    RUN_TEST(test_without_int1_samples_are_read_by_the_clock);
-    RUN_TEST(test_without_int1_a_sensor_that_stops_is_noticed);
-    return UNITY_END();
 }

@@ -9,7 +9,7 @@
 #include "support/board.h"
 #include "support/documented_limits.h"
 #include "support/rig.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { PROBES_MAX = 64 };
 
@@ -54,11 +54,6 @@ void setUp(void)
     rig.pass = pass;
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 /* Runs until the condition holds; fails after so many virtual milliseconds. */
 #define RUN_UNTIL(condition, limit_ms)                                                       \
     do {                                                                                     \
@@ -70,7 +65,7 @@ void tearDown(void)
     } while (0)
 
 /* Back-off 5, 10, 20, then 25 ms for ever: the alarm wakes main for it, whose passes take 20 us here. */
-static void test_tries_again_at_a_pause_that_doubles_to_25_ms(void)
+TEST(test_tries_again_at_a_pause_that_doubles_to_25_ms)
 {
     static const double back_off_ms[] = {
         LIMIT_BACK_OFF_MIN_MS, 10, 20, LIMIT_BACK_OFF_MAX_MS, LIMIT_BACK_OFF_MAX_MS, LIMIT_BACK_OFF_MAX_MS,
@@ -90,7 +85,7 @@ static void test_tries_again_at_a_pause_that_doubles_to_25_ms(void)
 }
 
 /* A good sample brings the pace back to 5 ms. */
-static void test_a_good_sample_resets_the_pace(void)
+TEST(test_a_good_sample_resets_the_pace)
 {
     adxl345_model_power(&hal_host_sensor, false);
     adxl345_start(&at_100_hz);
@@ -107,7 +102,7 @@ static void test_a_good_sample_resets_the_pace(void)
 }
 
 /* A burst that hangs is given up 3 ms after it began, and read again at once; each is seen up to 20 us late. */
-static void test_a_hung_burst_is_given_up(void)
+TEST(test_a_hung_burst_is_given_up)
 {
     adxl345_counters_t before;
     adxl345_counters_t after;
@@ -131,7 +126,7 @@ static void test_a_hung_burst_is_given_up(void)
 }
 
 /* Three failed bursts in a row are a fault of the bus; the first two are read again without a word. */
-static void test_three_failed_bursts_are_a_fault(void)
+TEST(test_three_failed_bursts_are_a_fault)
 {
     adxl345_counters_t counters;
     adxl345_start(&at_100_hz);
@@ -163,7 +158,7 @@ static void test_three_failed_bursts_are_a_fault(void)
  * period (data sheet p. 5), and is a fault three periods and 3 ms after that. It is asked every half millisecond to the
  * end.
  */
-static void test_a_first_sample_that_does_not_come_is_a_fault(void)
+TEST(test_a_first_sample_that_does_not_come_is_a_fault)
 {
     static const uint16_t rates_dhz[] = { 8000, 4000, 2000, 1000, 500, 250, 125 };
     for (size_t i = 0; i < 7; i++) {
@@ -187,7 +182,7 @@ static void test_a_first_sample_that_does_not_come_is_a_fault(void)
  * A stop that does not reach the sensor is tried again for a second, 40 times 25 ms apart and the time of the
  * transfers, under a millisecond each; then no more.
  */
-static void test_a_stop_is_tried_again_for_a_second(void)
+TEST(test_a_stop_is_tried_again_for_a_second)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
@@ -211,7 +206,7 @@ static void test_a_stop_is_tried_again_for_a_second(void)
 }
 
 /* INT1 comes back while the sensor is being asked why it is silent: no fault, and what its FIFO holds is delivered. */
-static void test_int1_that_rises_while_the_sensor_is_asked_is_no_fault(void)
+TEST(test_int1_that_rises_while_the_sensor_is_asked_is_no_fault)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
@@ -227,7 +222,7 @@ static void test_int1_that_rises_while_the_sensor_is_asked_is_no_fault(void)
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(50));
 }
 
-static void test_stop_with_a_stuck_bus_stops(void)
+TEST(test_stop_with_a_stuck_bus_stops)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
@@ -244,7 +239,7 @@ static void test_stop_with_a_stuck_bus_stops(void)
 }
 
 /* The last word counts, whatever comes while the sensor is being put to rest. */
-static void test_start_and_stop_while_quiescing(void)
+TEST(test_start_and_stop_while_quiescing)
 {
     static const adxl345_config_t at_400_hz = { 4000, 16, false, 0 };
     adxl345_start(&at_100_hz);
@@ -265,7 +260,7 @@ static void test_start_and_stop_while_quiescing(void)
 }
 
 /* Main takes nothing while the driver drains: it gives up after 100 ms instead of waiting for ever. */
-static void test_drain_that_nobody_empties_ends(void)
+TEST(test_drain_that_nobody_empties_ends)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
@@ -284,7 +279,7 @@ static void test_drain_that_nobody_empties_ends(void)
 }
 
 /* The interrupt of a transfer that was given up: it must neither deliver nor disturb what follows. */
-static void test_a_stale_bus_event_is_ignored(void)
+TEST(test_a_stale_bus_event_is_ignored)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
@@ -302,7 +297,7 @@ static void test_a_stale_bus_event_is_ignored(void)
  * An edge that comes while the pins are toggled by hand must not put a START on them; its sample is read afterwards,
  * with the time of the edge.
  */
-static void test_an_edge_while_the_bus_is_cleared_starts_no_transfer(void)
+TEST(test_an_edge_while_the_bus_is_cleared_starts_no_transfer)
 {
     const adxl345_sample_t *sample;
     adxl345_start(&at_100_hz);
@@ -328,7 +323,7 @@ static void test_an_edge_while_the_bus_is_cleared_starts_no_transfer(void)
 }
 
 /* A sensor that still runs from before gives edges while it is being configured: they are not for this driver. */
-static void test_edges_before_streaming_are_ignored(void)
+TEST(test_edges_before_streaming_are_ignored)
 {
     adxl345_model_start(&hal_host_sensor, 0x53 << 1);
     adxl345_model_write(&hal_host_sensor, ADXL345_BW_RATE);
@@ -348,7 +343,7 @@ static void test_edges_before_streaming_are_ignored(void)
 }
 
 /* 25 ms a try and two addresses: 65,535 failed accesses in a quarter of an hour. Counters stop there. */
-static void test_counters_saturate(void)
+TEST(test_counters_saturate)
 {
     adxl345_counters_t counters;
     adxl345_model_power(&hal_host_sensor, false);
@@ -359,24 +354,4 @@ static void test_counters_saturate(void)
     rig_run_ms(100);
     adxl345_counters(&counters);
     TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, counters.nacks);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_tries_again_at_a_pause_that_doubles_to_25_ms);
-    RUN_TEST(test_a_good_sample_resets_the_pace);
-    RUN_TEST(test_a_hung_burst_is_given_up);
-    RUN_TEST(test_three_failed_bursts_are_a_fault);
-    RUN_TEST(test_a_first_sample_that_does_not_come_is_a_fault);
-    RUN_TEST(test_a_stop_is_tried_again_for_a_second);
-    RUN_TEST(test_int1_that_rises_while_the_sensor_is_asked_is_no_fault);
-    RUN_TEST(test_stop_with_a_stuck_bus_stops);
-    RUN_TEST(test_start_and_stop_while_quiescing);
-    RUN_TEST(test_drain_that_nobody_empties_ends);
-    RUN_TEST(test_a_stale_bus_event_is_ignored);
-    RUN_TEST(test_an_edge_while_the_bus_is_cleared_starts_no_transfer);
-    RUN_TEST(test_edges_before_streaming_are_ignored);
-    RUN_TEST(test_counters_saturate);
-    return UNITY_END();
 }

@@ -5,7 +5,7 @@
 #include "adxl345.h"
 #include "adxl345_period.h"
 #include "support/documented_limits.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { STEPS = LIMIT_PERIOD_STEPS };
 
@@ -17,8 +17,6 @@ void setUp(void)
     t_us = 0xFFFFFFFFu - 40000u; /* the clock wraps on the way */
     adxl345_period_start(5000);
 }
-
-void tearDown(void) {}
 
 /* 0 until the period was measured. */
 static uint32_t measured_us_q4(void)
@@ -40,7 +38,7 @@ static void steps(unsigned count, uint32_t us)
 }
 
 /* The first stamp has no step before it: 17 stamps are 16 steps. */
-static void test_sixteen_steps_are_a_measurement(void)
+TEST(test_sixteen_steps_are_a_measurement)
 {
     for (unsigned times = 0; times < 3; times++) {
         setUp();
@@ -55,7 +53,7 @@ static void test_sixteen_steps_are_a_measurement(void)
 }
 
 /* The next sixteen begin where these end, and count alone: their mean, whatever each is. */
-static void test_each_sixteen_make_a_mean_of_their_own(void)
+TEST(test_each_sixteen_make_a_mean_of_their_own)
 {
     step(0, true);
     steps(STEPS, 10100);
@@ -72,7 +70,7 @@ static void test_each_sixteen_make_a_mean_of_their_own(void)
 /*
  * An eighth of the nominal period shorter or longer is a step between two samples; more, but for what is cut, is none.
  */
-static void test_a_step_is_within_an_eighth_of_the_nominal_one(void)
+TEST(test_a_step_is_within_an_eighth_of_the_nominal_one)
 {
     for (unsigned r = 0; r < sizeof nominals_us / sizeof nominals_us[0]; r++) {
         uint32_t shortest_us = (7u * nominals_us[r] + 7u) / 8u; /* the first whole number from 7/8 on */
@@ -91,7 +89,7 @@ static void test_a_step_is_within_an_eighth_of_the_nominal_one(void)
 }
 
 /* A stamp that is interpolated, or a step that is none, at any place: the sixteen are counted from the next one. */
-static void test_one_bad_stamp_at_any_place_begins_the_count_again(void)
+TEST(test_one_bad_stamp_at_any_place_begins_the_count_again)
 {
     for (unsigned place = 1; place <= STEPS; place++) {
         setUp();
@@ -117,7 +115,7 @@ static void test_one_bad_stamp_at_any_place_begins_the_count_again(void)
 }
 
 /* Another nominal period: nothing of the old one is left. */
-static void test_a_start_forgets(void)
+TEST(test_a_start_forgets)
 {
     step(0, true);
     steps(STEPS + STEPS / 2, 10100);
@@ -130,7 +128,7 @@ static void test_a_start_forgets(void)
 }
 
 /* 1e8 / period, rounded to 0.01 Hz. */
-static void test_the_rate_is_one_over_the_period(void)
+TEST(test_the_rate_is_one_over_the_period)
 {
     for (unsigned r = 0; r < sizeof nominals_us / sizeof nominals_us[0]; r++) {
         for (int per_mille = -120; per_mille <= 120; per_mille += 5) {
@@ -145,16 +143,4 @@ static void test_the_rate_is_one_over_the_period(void)
             TEST_ASSERT_EQUAL_UINT32(us, adxl345_period_us());
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_sixteen_steps_are_a_measurement);
-    RUN_TEST(test_each_sixteen_make_a_mean_of_their_own);
-    RUN_TEST(test_a_step_is_within_an_eighth_of_the_nominal_one);
-    RUN_TEST(test_one_bad_stamp_at_any_place_begins_the_count_again);
-    RUN_TEST(test_a_start_forgets);
-    RUN_TEST(test_the_rate_is_one_over_the_period);
-    return UNITY_END();
 }

@@ -13,7 +13,7 @@
 #include "support/board.h"
 #include "support/documented_limits.h"
 #include "support/rig.h"
-#include "unity.h"
+#include "support/test.h"
 
 static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
 static const adxl345_config_t at_400_hz = { 4000, 16, false, 0 };
@@ -39,11 +39,6 @@ void setUp(void)
     begin(100.0, 0.0);
 }
 
-void tearDown(void)
-{
-    rig_end();
-}
-
 static void stream_for_ms(double ms)
 {
     rig_stream_ms(&at_100_hz, ms);
@@ -60,7 +55,7 @@ static adxl345_counters_t counters(void)
 /*
  * DEVID is read, 11 registers are written, the last 8 read back: 9 bytes come, and none is written while it measures.
  */
-static void test_what_the_bus_carries_to_configure(void)
+TEST(test_what_the_bus_carries_to_configure)
 {
     adxl345_start(&at_100_hz);
     for (unsigned passes = 0; hal_host_sensor.reg[ADXL345_INT_ENABLE] == 0 && passes < 1000; passes++) {
@@ -81,7 +76,7 @@ static void test_what_the_bus_carries_to_configure(void)
 }
 
 /* Other offsets and interrupts that another program left do not stay. */
-static void test_what_another_program_left_is_cleared(void)
+TEST(test_what_another_program_left_is_cleared)
 {
     static const uint8_t cleared[] = { 0x1E, 0x1F, 0x20, 0x2F }; /* OFSX, OFSY, OFSZ, INT_MAP (data sheet p. 23) */
     for (size_t i = 0; i < sizeof cleared; i++) {
@@ -94,7 +89,7 @@ static void test_what_another_program_left_is_cleared(void)
 }
 
 /* From the end of the old configuration to the first sample of the new one, 11.1 ms and more, it is starting. */
-static void test_starting_ends_with_the_first_sample(void)
+TEST(test_starting_ends_with_the_first_sample)
 {
     stream_for_ms(300);
     TEST_ASSERT_FALSE(adxl345_interrupted());
@@ -112,7 +107,7 @@ static void test_starting_ends_with_the_first_sample(void)
 }
 
 /* Interrupted by a fault, until a sample comes; what was stopped is not, and begins again without a restart. */
-static void test_interrupted_is_what_failed(void)
+TEST(test_interrupted_is_what_failed)
 {
     stream_for_ms(300);
     adxl345_model_power(&hal_host_sensor, false);
@@ -136,7 +131,7 @@ static void test_interrupted_is_what_failed(void)
 }
 
 /* The measured period holds for the same sensor, found again; a start begins with the nominal one. */
-static void test_the_measured_period_survives_a_fault(void)
+TEST(test_the_measured_period_survives_a_fault)
 {
     begin(100.0, 30000.0); /* 3 % fast: 9,709 us */
     stream_for_ms(300);
@@ -158,7 +153,7 @@ static void test_the_measured_period_survives_a_fault(void)
  * By its edge a sample is not drained; each that is found in the FIFO without an edge of its own is, and no other, but
  * for one that comes while the clock looks for it: the times of those before it are half a period off at most.
  */
-static void test_drained_samples_are_counted_one_by_one(void)
+TEST(test_drained_samples_are_counted_one_by_one)
 {
     for (unsigned held = 3; held <= 10; held++) {
         setUp();
@@ -244,7 +239,7 @@ static void count_everything(void)
 }
 
 /* Each counter has its place, the driver's first, then those of the readings: the eleven differ and none is 0. */
-static void test_counters_by_their_places(void)
+TEST(test_counters_by_their_places)
 {
     count_everything();
     adxl345_readings_t readings;
@@ -265,7 +260,7 @@ static void test_counters_by_their_places(void)
 }
 
 /* Samples 20 to 39 are equal: the tenth and those after it are stuck, 11, and each is marked once. */
-static void test_stuck_samples_are_marked_and_counted(void)
+TEST(test_stuck_samples_are_marked_and_counted)
 {
     uint16_t before = counters().samples_stuck;
     for (size_t i = 20; i < 40; i++) {
@@ -286,7 +281,7 @@ static void test_stuck_samples_are_marked_and_counted(void)
 }
 
 /* x jumps to its double and back from sample 20 on: the eighth jump from one sample to the next is the fault. */
-static void test_doubled_samples_are_two_sensors(void)
+TEST(test_doubled_samples_are_two_sensors)
 {
     for (size_t i = 0; i < 40; i++) {
         rig.stream.rows[i].lsb[0] = i < 20 || i % 2 != 0 ? (int16_t)(200 + i % 3) : (int16_t)(400 + i % 5);
@@ -304,7 +299,7 @@ static void test_doubled_samples_are_two_sensors(void)
 }
 
 /* The sensor paused and is asked why; the edge of the sample that comes just then is no time, but INT1 has risen. */
-static void test_an_edge_while_the_sensor_is_asked_says_that_int1_is_well(void)
+TEST(test_an_edge_while_the_sensor_is_asked_says_that_int1_is_well)
 {
     stream_for_ms(300);
     hal_host_sensor.reg[ADXL345_POWER_CTL] = 0;
@@ -323,7 +318,7 @@ static void test_an_edge_while_the_sensor_is_asked_says_that_int1_is_well(void)
  * INT1 falls silent: the sensor is read five quarters of a period after the last burst, which takes 119 bits. Main
  * passes for that, and not for nothing.
  */
-static void test_a_silent_sensor_is_asked_after_five_quarters_of_a_period(void)
+TEST(test_a_silent_sensor_is_asked_after_five_quarters_of_a_period)
 {
     for (unsigned phase = 0; phase < 10; phase++) {
         setUp();
@@ -340,21 +335,4 @@ static void test_a_silent_sensor_is_asked_after_five_quarters_of_a_period(void)
         TEST_ASSERT_TRUE(took_us >= 12500 && took_us <= 12500 + 119 * 44 / 16 + 100);
         TEST_ASSERT_TRUE(passes <= 10);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_what_the_bus_carries_to_configure);
-    RUN_TEST(test_what_another_program_left_is_cleared);
-    RUN_TEST(test_starting_ends_with_the_first_sample);
-    RUN_TEST(test_interrupted_is_what_failed);
-    RUN_TEST(test_the_measured_period_survives_a_fault);
-    RUN_TEST(test_drained_samples_are_counted_one_by_one);
-    RUN_TEST(test_counters_by_their_places);
-    RUN_TEST(test_stuck_samples_are_marked_and_counted);
-    RUN_TEST(test_doubled_samples_are_two_sensors);
-    RUN_TEST(test_an_edge_while_the_sensor_is_asked_says_that_int1_is_well);
-    RUN_TEST(test_a_silent_sensor_is_asked_after_five_quarters_of_a_period);
-    return UNITY_END();
 }

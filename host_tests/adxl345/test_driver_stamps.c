@@ -12,7 +12,7 @@
 #include "support/board.h"
 #include "support/documented_limits.h"
 #include "support/rig.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { PERIOD_US = 10000, PASSES_PER_PERIOD = PERIOD_US / 20, BURST_US = 500, EXACT_US = 100 };
 enum { FIFO_FULL = 32, DEPTH = LIMIT_SENSOR_DEPTH }; /* samples in the FIFO, and in the sensor (data sheet p. 27) */
@@ -42,11 +42,6 @@ static void begin(double ppm)
 void setUp(void)
 {
     begin(0.0);
-}
-
-void tearDown(void)
-{
-    rig_end();
 }
 
 static void stream_for_ms(double ms)
@@ -88,7 +83,7 @@ static uint32_t next_stamp_us(void)
  * The sensor pauses, then has one sample without an edge. It is the next after the last one, if it may have waited
  * for so long: the 33rd after it pushes it out, so 33 periods are the most.
  */
-static void test_no_sample_waits_longer_than_the_sensor_is_deep(void)
+TEST(test_no_sample_waits_longer_than_the_sensor_is_deep)
 {
     for (unsigned periods = 2; periods < 2 * DEPTH + 4; periods++) {
         setUp();
@@ -115,7 +110,7 @@ static void test_no_sample_waits_longer_than_the_sensor_is_deep(void)
  * Main is away until the sensor has lost samples, and then its first readings are torn: those after them have no edge
  * and no Overrun bit. How many were lost is not known, but none can have waited longer than the sensor is deep.
  */
-static void test_torn_readings_of_a_full_sensor_do_not_make_the_others_late(void)
+TEST(test_torn_readings_of_a_full_sensor_do_not_make_the_others_late)
 {
     for (unsigned torn = 1; torn <= 2; torn++) {
         for (unsigned phase = 0; phase < 10; phase++) {
@@ -139,7 +134,7 @@ static void test_torn_readings_of_a_full_sensor_do_not_make_the_others_late(void
  * and main comes late, with up to 30 after it (a FIFO of 32 has filled, and says Overrun). By the nominal period it
  * seems 30 x 4 % + 1/2 = 1.7 periods too late for them: it keeps the time of its edge.
  */
-static void test_an_edge_counts_more_than_a_nominal_period(void)
+TEST(test_an_edge_counts_more_than_a_nominal_period)
 {
     for (unsigned i = 0; i < 2 * (FIFO_FULL - 1); i++) {
         unsigned held = i / 2 + 1;
@@ -163,7 +158,7 @@ static void test_an_edge_counts_more_than_a_nominal_period(void)
  * INT1 comes back to a sensor that holds so many samples: its edge is late for the oldest, by more than two periods
  * from three on. What follows it gives its age, but for the half period that the newest may be old, and the burst.
  */
-static void test_the_edge_of_int1_that_comes_back_is_not_the_samples(void)
+TEST(test_the_edge_of_int1_that_comes_back_is_not_the_samples)
 {
     for (unsigned held = 3; held <= DEPTH; held++) {
         for (unsigned phase = 0; phase < 10; phase++) {
@@ -197,7 +192,7 @@ static void take_out_of_the_sensor(void)
  * A burst is cut in its first data byte and the sample goes with it. Main is away until the next one has come: that has
  * an edge of its own, and the time of that.
  */
-static void test_a_cut_in_the_first_data_byte_gives_no_stamp_away(void)
+TEST(test_a_cut_in_the_first_data_byte_gives_no_stamp_away)
 {
     stream_for_ms(300);
     size_t before = rig.taken_count;
@@ -220,7 +215,7 @@ static void test_a_cut_in_the_first_data_byte_gives_no_stamp_away(void)
  * INT1 goes high for nothing at any time between two samples, and stays so: the reading finds the sensor empty. Main
  * is away until the next sample is there, which has no edge: it came when it was due, not when the sensor was empty.
  */
-static void test_a_sample_after_an_empty_reading_came_when_it_was_due(void)
+TEST(test_a_sample_after_an_empty_reading_came_when_it_was_due)
 {
     for (unsigned tenths = 1; tenths < 9; tenths++) {
         setUp();
@@ -238,16 +233,4 @@ static void test_a_sample_after_an_empty_reading_came_when_it_was_due(void)
         hal_host_faults.int1_high = false;
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_no_sample_waits_longer_than_the_sensor_is_deep);
-    RUN_TEST(test_torn_readings_of_a_full_sensor_do_not_make_the_others_late);
-    RUN_TEST(test_an_edge_counts_more_than_a_nominal_period);
-    RUN_TEST(test_the_edge_of_int1_that_comes_back_is_not_the_samples);
-    RUN_TEST(test_a_cut_in_the_first_data_byte_gives_no_stamp_away);
-    RUN_TEST(test_a_sample_after_an_empty_reading_came_when_it_was_due);
-    return UNITY_END();
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "hal_i2c.h"
-#include "unity.h"
+#include "support/test.h"
 
 /* The state machine below talks to these instead of the virtual bus. */
 #define hal_i2c_start spy_start
@@ -193,11 +193,7 @@ static bool data_asked_before(unsigned at)
     return at > 0 && (steps[at - 1].then == RECEIVE_ACK || steps[at - 1].then == RECEIVE_NACK);
 }
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
-static void test_transfers_do_their_steps(void)
+TEST(test_transfers_do_their_steps)
 {
     for (unsigned t = 0; t < TRANSFERS; t++) {
         begin(t);
@@ -208,7 +204,7 @@ static void test_transfers_do_their_steps(void)
 }
 
 /* A first byte without I2C_BUS_MORE is followed by one, which is refused, however many were asked for. */
-static void test_a_read_that_needs_no_more_ends_with_its_second_byte(void)
+TEST(test_a_read_that_needs_no_more_ends_with_its_second_byte)
 {
     for (unsigned first = 0; first <= 0xFF; first++) {
         for (unsigned t = 1; t < TRANSFERS; t++) {
@@ -239,7 +235,7 @@ static i2c_bus_state_t outcome(const step_t *step, unsigned s)
  * one byte more than asked for) is as wrong as any: the transfer ends, by its right name, with a STOP or a release, and
  * what is read stays within its bytes.
  */
-static void test_every_wrong_status_at_every_step_ends_the_transfer(void)
+TEST(test_every_wrong_status_at_every_step_ends_the_transfer)
 {
     unsigned cases = 0;
     for (unsigned t = 0; t < TRANSFERS; t++) {
@@ -265,7 +261,7 @@ static void test_every_wrong_status_at_every_step_ends_the_transfer(void)
 }
 
 /* After its end a transfer takes no more events, whatever they are. */
-static void test_events_after_the_end_are_stale(void)
+TEST(test_events_after_the_end_are_stale)
 {
     for (unsigned s = 0; s <= 0xFF; s++) {
         begin(3);
@@ -275,14 +271,4 @@ static void test_events_after_the_end_are_stale(void)
         TEST_ASSERT_EQUAL(I2C_BUS_OK, bus->state);
         assert_received(6);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_transfers_do_their_steps);
-    RUN_TEST(test_a_read_that_needs_no_more_ends_with_its_second_byte);
-    RUN_TEST(test_every_wrong_status_at_every_step_ends_the_transfer);
-    RUN_TEST(test_events_after_the_end_are_stale);
-    return UNITY_END();
 }

@@ -7,16 +7,12 @@
 #include "adxl345_table.h"
 #include "support/documented_limits.h"
 #include "support/random.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { PATTERN = 0x8A };
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 /* No shift turns the neighbours of FIFO_CTL into its pattern: z's sign byte before it (16 g), FIFO_STATUS after it. */
-static void test_no_shift_keeps_the_pattern(void)
+TEST(test_no_shift_keeps_the_pattern)
 {
     TEST_ASSERT_EQUAL_HEX8(PATTERN, TABLE_FIFO_CTL);
     for (unsigned by = 1; by < 8; by++) {
@@ -54,7 +50,7 @@ static void start(uint8_t range_g, bool self_test)
 }
 
 /* What power-on leaves in the two bytes that an empty sensor is asked for; zeros alone are a line that is low. */
-static void test_registers_after_power_on(void)
+TEST(test_registers_after_power_on)
 {
     uint8_t reading[READING_BYTES] = { 0x02, 0, 0, 0, 0, 0, 0, 0, PATTERN, 0 }; /* from the third on those before */
     static const int16_t last[] = { 1, -2, 256 };
@@ -72,7 +68,7 @@ static void test_registers_after_power_on(void)
 }
 
 /* A reading is of the self-test if it was asked for, and only then. */
-static void test_a_reading_with_the_other_self_test_bit_is_no_reading(void)
+TEST(test_a_reading_with_the_other_self_test_bit_is_no_reading)
 {
     static const int16_t lsb[] = { 100, -200, 300 };
     for (unsigned asked = 0; asked < 2; asked++) {
@@ -85,7 +81,7 @@ static void test_a_reading_with_the_other_self_test_bit_is_no_reading(void)
 }
 
 /* Bits 15 down to the range's sign bit agree: 16 g has 13 bits, 2 g has 10 (full resolution, p. 27). */
-static void test_a_sign_bit_that_disagrees_is_no_reading(void)
+TEST(test_a_sign_bit_that_disagrees_is_no_reading)
 {
     static const uint8_t ranges_g[] = { 2, 4, 8, 16 };
     for (unsigned r = 0; r < 4; r++) {
@@ -108,7 +104,7 @@ static void test_a_sign_bit_that_disagrees_is_no_reading(void)
 }
 
 /* One past the upper rail, while the other axes are at the lower one and set no bit beside it. */
-static void test_a_value_beyond_the_range_is_no_reading(void)
+TEST(test_a_value_beyond_the_range_is_no_reading)
 {
     for (uint8_t code = 0; code < 4; code++) {
         uint8_t range_g = (uint8_t)(2u << code);
@@ -124,7 +120,7 @@ static void test_a_value_beyond_the_range_is_no_reading(void)
     }
 }
 
-static void test_every_single_flip_of_pattern_and_status(void)
+TEST(test_every_single_flip_of_pattern_and_status)
 {
     static const int16_t lsb[] = { 1, -2, 256 };
     start(16, false);
@@ -144,7 +140,7 @@ static void test_every_single_flip_of_pattern_and_status(void)
 }
 
 /* An empty sensor is asked for two bytes: the others are those of the reading before it, whatever that was. */
-static void test_an_empty_reading_has_the_right_format(void)
+TEST(test_an_empty_reading_has_the_right_format)
 {
     uint8_t reading[READING_BYTES] = { 0, 0, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0xFF };
     static const int16_t last[] = { 1, -2, 256 };
@@ -159,7 +155,7 @@ static void test_an_empty_reading_has_the_right_format(void)
     }
 }
 
-static void test_ones_on_all_axes_are_nobody(void)
+TEST(test_ones_on_all_axes_are_nobody)
 {
     static const int16_t nobody[] = { -1, -1, -1 };
     start(16, false);
@@ -169,7 +165,7 @@ static void test_ones_on_all_axes_are_nobody(void)
     }
 }
 
-static void test_counters_saturate(void)
+TEST(test_counters_saturate)
 {
     static const int16_t lsb[] = { 1, -2, 256 };
     adxl345_readings_t readings;
@@ -187,7 +183,7 @@ static void test_counters_saturate(void)
 }
 
 /* Flag 64 of the row after a reading that failed, and of no other (docs/protocol.md). */
-static void test_a_failed_reading_is_marked_once(void)
+TEST(test_a_failed_reading_is_marked_once)
 {
     static const int16_t lsb[] = { 1, -2, 256 };
     adxl345_init();
@@ -204,7 +200,7 @@ static void test_a_failed_reading_is_marked_once(void)
 }
 
 /* However many follow the third, they are torn: none of them says that the configuration is lost. */
-static void test_torn_readings_stay_torn(void)
+TEST(test_torn_readings_stay_torn)
 {
     static const int16_t lsb[] = { 1, -2, 256 };
     adxl345_init();
@@ -220,7 +216,7 @@ static void test_torn_readings_stay_torn(void)
  * INT1 is called stuck by three bursts in a row that met no sample, of which those before adxl345_integrity_forget are
  * none.
  */
-static void test_the_third_empty_reading_is_of_an_int1_that_is_stuck(void)
+TEST(test_the_third_empty_reading_is_of_an_int1_that_is_stuck)
 {
     start(16, false);
     format = 0x0B;
@@ -234,7 +230,7 @@ static void test_the_third_empty_reading_is_of_an_int1_that_is_stuck(void)
 }
 
 /* 32 good readings that leave INT1 low: the line is trusted again, and three more empty readings make it stuck. */
-static void test_an_int1_that_was_stuck_is_trusted_anew(void)
+TEST(test_an_int1_that_was_stuck_is_trusted_anew)
 {
     static const int16_t lsb[] = { 1, -2, 256 };
     start(16, false);
@@ -254,7 +250,7 @@ static void test_an_int1_that_was_stuck_is_trusted_anew(void)
 }
 
 /* The tenth equal triplet in a row and all that follow it, until one differs in one axis. */
-static void test_the_tenth_equal_reading_is_stuck(void)
+TEST(test_the_tenth_equal_reading_is_stuck)
 {
     for (unsigned axis = 0; axis < 3; axis++) {
         uint8_t reading[READING_BYTES] = { 0x80, 0x0B, 1, 0, 2, 0, 3, 0, PATTERN, 0 };
@@ -272,7 +268,7 @@ static void test_the_tenth_equal_reading_is_stuck(void)
 }
 
 /* A sensor that was stuck, and is another now: its own ten readings count, whether they are as before or not. */
-static void test_a_sensor_that_may_be_another_has_ten_readings_of_its_own(void)
+TEST(test_a_sensor_that_may_be_another_has_ten_readings_of_its_own)
 {
     for (unsigned differs = 0; differs < 2; differs++) {
         uint8_t reading[READING_BYTES] = { 0x80, 0x0B, 1, 0, 2, 0, 3, 0, PATTERN, 0 };
@@ -321,7 +317,7 @@ static double equal_chance(const double sigma_lsb[3], unsigned readings)
 /* By the data sheet (p. 4) and by the quietest recording; the sum over codes is judged by what is drawn below. */
 static const double data_sheet_lsb[] = { 0.75, 0.75, 1.1 };
 
-static void test_the_bound_of_a_false_alarm(void)
+TEST(test_the_bound_of_a_false_alarm)
 {
     static const double recorded_lsb[] = { 0.72, 0.78, 0.99 };
     const unsigned readings = ADXL345_STUCK_REPEATS + 1u;
@@ -332,7 +328,7 @@ static void test_the_bound_of_a_false_alarm(void)
 }
 
 /* Ten million samples at rest on whole codes: 2.3e-11 each. Of four equal ones there are as many as derived. */
-static void test_noise_is_never_stuck(void)
+TEST(test_noise_is_never_stuck)
 {
     enum { SAMPLES = 10000000 };
     uint8_t reading[READING_BYTES] = { 0x80, 0x0B, 0, 0, 0, 0, 0, 0, PATTERN, 0 };
@@ -356,27 +352,4 @@ static void test_noise_is_never_stuck(void)
     }
     double expected = SAMPLES * equal_chance(data_sheet_lsb, 4);
     TEST_ASSERT_DOUBLE_WITHIN(8.0 * sqrt(expected), expected, fours);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_registers_after_power_on);
-    RUN_TEST(test_no_shift_keeps_the_pattern);
-    RUN_TEST(test_a_reading_with_the_other_self_test_bit_is_no_reading);
-    RUN_TEST(test_a_sign_bit_that_disagrees_is_no_reading);
-    RUN_TEST(test_a_value_beyond_the_range_is_no_reading);
-    RUN_TEST(test_every_single_flip_of_pattern_and_status);
-    RUN_TEST(test_an_empty_reading_has_the_right_format);
-    RUN_TEST(test_ones_on_all_axes_are_nobody);
-    RUN_TEST(test_counters_saturate);
-    RUN_TEST(test_a_failed_reading_is_marked_once);
-    RUN_TEST(test_torn_readings_stay_torn);
-    RUN_TEST(test_the_third_empty_reading_is_of_an_int1_that_is_stuck);
-    RUN_TEST(test_an_int1_that_was_stuck_is_trusted_anew);
-    RUN_TEST(test_the_tenth_equal_reading_is_stuck);
-    RUN_TEST(test_a_sensor_that_may_be_another_has_ten_readings_of_its_own);
-    RUN_TEST(test_the_bound_of_a_false_alarm);
-    RUN_TEST(test_noise_is_never_stuck);
-    return UNITY_END();
 }

@@ -5,9 +5,8 @@
 #include "support/random.h"
 #include "support/recordings.h"
 #include "support/shipped.h"
-#include "unity.h"
+#include "support/test.h"
 
-#include <stdio.h>
 #include <string.h>
 
 enum { SENSOR_AT_REST_LSB = 248, END_SAMPLES = LIMIT_JUMPS_END };
@@ -16,8 +15,6 @@ void setUp(void)
 {
     adxl345_watch_start();
 }
-
-void tearDown(void) {}
 
 static void jump(size_t axis, int16_t from_lsb, int16_t to_lsb)
 {
@@ -38,7 +35,7 @@ static void rest(unsigned samples)
 }
 
 /* On every axis, with either sign, up or down. */
-static void test_the_eighth_jump_is_told_and_quiet_ends_it(void)
+TEST(test_the_eighth_jump_is_told_and_quiet_ends_it)
 {
     for (unsigned which = 0; which < 12; which++) {
         int16_t lsb = (int16_t)(which & 1u ? SENSOR_AT_REST_LSB : -SENSOR_AT_REST_LSB);
@@ -56,7 +53,7 @@ static void test_the_eighth_jump_is_told_and_quiet_ends_it(void)
 }
 
 /* One reading in ten doubled is two jumps in ten samples: told soon; one in forty is not told. */
-static void test_share_of_doubled_readings(void)
+TEST(test_share_of_doubled_readings)
 {
     for (unsigned i = 0; i < 40; i++) {
         jump(2, 250, 500);
@@ -76,7 +73,7 @@ static void test_share_of_doubled_readings(void)
 /*
  * A jump raises the score by 16 and another sample lowers it by 1: one in sixteen grows by 1, one in seventeen never.
  */
-static void test_one_jump_in_sixteen_is_the_limit(void)
+TEST(test_one_jump_in_sixteen_is_the_limit)
 {
     for (unsigned calm = LIMIT_JUMP_SHARE - 2; calm <= LIMIT_JUMP_SHARE; calm++) {
         adxl345_watch_start();
@@ -97,7 +94,7 @@ static void test_one_jump_in_sixteen_is_the_limit(void)
  * Eight jumps reach 128 and are reported; with a single calm sample among them they are one short, and the ninth is
  * reported.
  */
-static void test_eight_jumps_with_a_calm_sample_are_one_short(void)
+TEST(test_eight_jumps_with_a_calm_sample_are_one_short)
 {
     for (unsigned before = 1; before < 8; before++) {
         adxl345_watch_start();
@@ -121,7 +118,7 @@ static bool suspected_after(int16_t from_lsb, int16_t to_lsb)
 }
 
 /* Below 64 LSB noise does it; a double is meant within a sixteenth of the single value. */
-static void test_what_a_doubling_is(void)
+TEST(test_what_a_doubling_is)
 {
     for (int16_t lsb = LIMIT_DOUBLE_MIN_LSB - 1; lsb <= LIMIT_DOUBLE_MIN_LSB + 1; lsb++) {
         TEST_ASSERT_EQUAL(lsb >= LIMIT_DOUBLE_MIN_LSB, suspected_after(lsb, (int16_t)(2 * lsb)));
@@ -140,7 +137,7 @@ static void test_what_a_doubling_is(void)
 }
 
 /* A knock or a free fall moves them all. */
-static void test_two_axes_at_once_are_a_movement(void)
+TEST(test_two_axes_at_once_are_a_movement)
 {
     static const int16_t low[] = { 100, 5, 200 };
     static const int16_t both[] = { 200, 5, 400 };
@@ -161,7 +158,7 @@ static void test_two_axes_at_once_are_a_movement(void)
 }
 
 /* 15 % of each axis' readings are 8 sigma off, where that comes nearest to a doubling: sigma 8 and 64 LSB. */
-static void test_outliers_are_no_second_sensor(void)
+TEST(test_outliers_are_no_second_sensor)
 {
     test_random_t random;
     random_seed(&random, 20261122u);
@@ -190,7 +187,7 @@ static size_t suspected_in(const stream_t *stream)
     return 0;
 }
 
-static void test_no_shipped_stream_is_suspected(void)
+TEST(test_no_shipped_stream_is_suspected)
 {
     for (size_t i = 0; i < SHIPPED_STREAMS; i++) {
         stream_t stream;
@@ -201,7 +198,7 @@ static void test_no_shipped_stream_is_suspected(void)
 }
 
 /* Two sensors drove one address in one recording: known within 2 s. The others moved, vibrated, hit their rails. */
-static void test_of_the_recordings_the_one_with_two_sensors_is_suspected(void)
+TEST(test_of_the_recordings_the_one_with_two_sensors_is_suspected)
 {
     static recordings_t recordings;
     if (!recordings_there()) {
@@ -222,19 +219,4 @@ static void test_of_the_recordings_the_one_with_two_sensors_is_suspected(void)
         stream_free(&stream);
     }
     TEST_ASSERT_TRUE(met);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_the_eighth_jump_is_told_and_quiet_ends_it);
-    RUN_TEST(test_share_of_doubled_readings);
-    RUN_TEST(test_one_jump_in_sixteen_is_the_limit);
-    RUN_TEST(test_eight_jumps_with_a_calm_sample_are_one_short);
-    RUN_TEST(test_what_a_doubling_is);
-    RUN_TEST(test_two_axes_at_once_are_a_movement);
-    RUN_TEST(test_outliers_are_no_second_sensor);
-    RUN_TEST(test_no_shipped_stream_is_suspected);
-    RUN_TEST(test_of_the_recordings_the_one_with_two_sensors_is_suspected);
-    return UNITY_END();
 }

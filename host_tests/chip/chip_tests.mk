@@ -19,14 +19,15 @@ CHIP_FLAGS  := -std=gnu11 -mmcu=atmega328p -DF_CPU=16000000UL $(AVR_SMALL) -ffun
                $(INCLUDES) -Ihost_tests -I$(BITEXACT) -isystem $(UNITY_DIR)
 CHIP_COMMON := $(FILTER_SRC) $(LAW_SUPPORT) $(BITEXACT)/output.c $(BITEXACT)/output_chip.c
 ANY_FILTER  := lib/filters/src/filter_list
-CHIP_OBJ    := $(patsubst %.c,$(U)/tests/%.o,$(filter-out $(ANY_FILTER).c,$(CHIP_COMMON))) $(U)/tests/host_tests/chip/unity_chip.o $(U)/tests/unity.o
+CHIP_UNITY  := $(addprefix $(U)/tests/host_tests/,chip/unity_chip.o support/test.o)
+CHIP_OBJ    := $(patsubst %.c,$(U)/tests/%.o,$(filter-out $(ANY_FILTER).c,$(CHIP_COMMON))) $(CHIP_UNITY) $(U)/tests/unity.o
 UNITY_CHIP  := -include host_tests/chip/unity_chip.h
 
 $(U)/tests/%.o: %.c Makefile host_tests/chip/chip_tests.mk
 	@mkdir -p $(@D)
 	@$(AVR_CC) $(CHIP_FLAGS) -MMD -MP -c $< -o $@
 
-$(foreach t,$(UNITY_1) $(UNITY_2),$(call test_object,$(t))) $(U)/tests/host_tests/chip/unity_chip.o: CHIP_FLAGS += $(UNITY_CHIP)
+$(foreach t,$(UNITY_1) $(UNITY_2),$(call test_object,$(t))) $(CHIP_UNITY): CHIP_FLAGS += $(UNITY_CHIP)
 
 # not gnu11: there Unity reads the macro AVR as a reason to keep its texts where it does not find them
 $(U)/tests/unity.o: $(UNITY_DIR)/unity.c host_tests/chip/unity_chip.h Makefile host_tests/chip/chip_tests.mk

@@ -1,8 +1,5 @@
 #include "unity.h"
 
-/* Unity declares it only when it defines RUN_TEST itself. */
-void UnityDefaultTestRun(UnityTestFunction test, const char *name, const int line);
-
 enum { NAME_MAX = 80 };
 
 void unity_chip_run(void (*test)(void), const char *flash_name, int line)

@@ -17,7 +17,8 @@
 #ifdef AVR
 #include <avr/pgmspace.h>
 
-#define RUN_TEST(test) unity_chip_run(test, PSTR(#test), __LINE__)
+#define TEST_TEXT(text) PSTR(text)
+#define TEST_RUN unity_chip_run
 
 /* Unity's runner, with the name copied from program memory. */
 void unity_chip_run(void (*test)(void), const char *flash_name, int line);

@@ -1,7 +1,6 @@
 /* The guarded adaptive filter: what it does with a ramp, outliers, a burst, a jump; limits of its parameters. */
 #include "adaptive.h"
-#include "support/laws.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 enum { NOISE_LSB = 8 }; /* uniform, +-8 LSB: sigma 4.9 */
 
@@ -12,8 +11,6 @@ void setUp(void)
     random_state = 77u;
 }
 
-void tearDown(void) {}
-
 static int16_t noisy(int16_t level_lsb)
 {
     return (int16_t)(level_lsb + (int16_t)random32_below(&random_state, 2u * NOISE_LSB + 1u) - NOISE_LSB);
@@ -22,12 +19,11 @@ static int16_t noisy(int16_t level_lsb)
 /* Settled at a level, 100 Hz. */
 static filter_t settled(int16_t level_lsb, bool guarded)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
     if (!guarded) {
         config.value[ADAPTIVE_GUARD_SIGMA_Q8] = 0;
     }
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made(&filter_law_adaptive, &config);
     for (uint16_t k = 0; k < 600u; k++) {
         (void)filter_update(&f, noisy(level_lsb));
     }
@@ -40,7 +36,7 @@ static int16_t whole(int32_t x_lsb_q16)
 }
 
 /* Far beyond twice the gate nothing is taken: the estimate goes on as if the sample were missing. */
-static void an_isolated_outlier_moves_nothing(void)
+TEST(an_isolated_outlier_moves_nothing)
 {
     filter_t f = settled(100, true);
     (void)filter_update(&f, 92); /* the one before lies on the other side */
@@ -48,15 +44,14 @@ static void an_isolated_outlier_moves_nothing(void)
     int32_t expected = coast(&without);
     TEST_ASSERT_EQUAL_INT32(expected, filter_update(&f, 2000));
     TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, f.flags);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_UINT16(0, probe.gain_uq16);
     TEST_ASSERT_TRUE(probe.innovation_lsb_q16 > 1800L * 65536);
     TEST_ASSERT_TRUE(probe.gate_lsb2_q8 < 100UL * 100UL * 256UL);
 }
 
 /* The twin: without the guard it passes with its gain. */
-static void without_the_guard_an_outlier_passes(void)
+TEST(without_the_guard_an_outlier_passes)
 {
     filter_t f = settled(100, false);
     TEST_ASSERT_TRUE(whole(filter_update(&f, 2000)) > 150);
@@ -64,7 +59,7 @@ static void without_the_guard_an_outlier_passes(void)
 }
 
 /* Nine doubled readings, the longest burst that was measured on a shared bus, do not reach `confirm` (12 samples). */
-static void a_burst_of_nine_is_not_believed(void)
+TEST(a_burst_of_nine_is_not_believed)
 {
     filter_t f = settled(250, true);
     for (uint8_t k = 0; k < 9u; k++) {
@@ -79,7 +74,7 @@ static void a_burst_of_nine_is_not_believed(void)
 }
 
 /* A jump that stays is believed with the twelfth sample at the latest, and from then on the estimate is there. */
-static void a_jump_that_stays_is_believed(void)
+TEST(a_jump_that_stays_is_believed)
 {
     filter_t f = settled(0, true);
     bool again = false;
@@ -92,7 +87,7 @@ static void a_jump_that_stays_is_believed(void)
 }
 
 /* A manoeuvre within what motion can do is followed without waiting: 300 LSB/s from rest at 100 Hz, 10 samples late. */
-static void motion_is_followed_and_shortens_the_memory(void)
+TEST(motion_is_followed_and_shortens_the_memory)
 {
     filter_t f = settled(0, true);
     uint32_t slow = f.own.adaptive.k_uq32;
@@ -104,23 +99,19 @@ static void motion_is_followed_and_shortens_the_memory(void)
         shortest = (f.own.adaptive.k_uq32 > shortest) ? f.own.adaptive.k_uq32 : shortest;
     }
     TEST_ASSERT_INT16_WITHIN(2 * NOISE_LSB, level, whole(f.x_lsb_q16));
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_INT32_WITHIN(65536, 3L * 65536, probe.rate_lsb_q16);
     TEST_ASSERT_EQUAL_UINT16(f.own.adaptive.fast_uq16, (uint16_t)(shortest >> 16));
     TEST_ASSERT_TRUE(slow < shortest / 2U);
 }
 
 /* At rest the memory grows by half a sample per sample, to the slowest: k = 2/N falls from 1/2 as 2 / (4 + n/2). */
-static void memory_grows_by_half_a_sample(void)
+TEST(memory_grows_by_half_a_sample)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
     config.value[ADAPTIVE_SLOW_MS] = 60000;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
-    for (uint16_t k = 0; k < 405u; k++) {
-        (void)filter_update(&f, 0);
-    }
+    filter_t f = made(&filter_law_adaptive, &config);
+    feed(&f, 0, 405);
     double memory = 2.0 * 4294967296.0 /
                     (double)f.own.adaptive.k_uq32; /* 4 + 200, and 1/k grows a little faster at first */
     TEST_ASSERT_TRUE(memory > 200.0 && memory < 212.0);
@@ -129,10 +120,9 @@ static void memory_grows_by_half_a_sample(void)
 /* Mean of the scatter over the last four fifths of 2000 noisy samples, LSB / 256; R = 100 is set after each of them. */
 static uint32_t mean_scatter_uq8(bool identify)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
     config.value[ADAPTIVE_IDENTIFY] = identify ? 1 : 0;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made(&filter_law_adaptive, &config);
     uint32_t sum = 0;
     for (uint16_t k = 0; k < 2000u; k++) {
         (void)filter_update(&f, noisy(0));
@@ -150,7 +140,7 @@ static uint32_t mean_scatter_uq8(bool identify)
  * since a mean size of uniform noise is 0.866 sigma instead of the 0.798 of Gaussian. Sigma is 4.90 LSB (variance
  * (17^2 - 1) / 12); 9 % for chance: three deviations of a mean over 800 terms, of which 31 weigh in each value.
  */
-static void what_identification_off_means(void)
+TEST(what_identification_off_means)
 {
     TEST_ASSERT_EQUAL_UINT32(10u * 256u, mean_scatter_uq8(false));
     uint32_t scatter_uq8 = mean_scatter_uq8(true);
@@ -162,7 +152,7 @@ static void what_identification_off_means(void)
  * Across a gap no sample agrees with the one before it. Of the two one is a term of the scatter, limited to 2.5 times
  * what is expected: 1.5 (1 + k) / 16 more, k <= 0.2.
  */
-static void a_gap_breaks_agreement(void)
+TEST(a_gap_breaks_agreement)
 {
     filter_t f = settled(0, true);
     uint32_t scatter = f.own.adaptive.scatter_lsb_uq24;
@@ -176,7 +166,7 @@ static void a_gap_breaks_agreement(void)
 }
 
 /* A prediction at the end of the range and a sample beyond the gate: both are flagged. */
-static void a_gated_sample_keeps_the_saturation(void)
+TEST(a_gated_sample_keeps_the_saturation)
 {
     filter_t f = settled(100, true);
     f.own.adaptive.gate_sigma_q8 = 8u * 256u;
@@ -189,13 +179,12 @@ static void a_gated_sample_keeps_the_saturation(void)
 }
 
 /* Memories out of reach are limited, not refused: to 3.3 (k = 0.6) and 4096 samples, the shortest to the slowest. */
-static void memories_are_limited(void)
+TEST(memories_are_limited)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
     config.value[ADAPTIVE_SLOW_MS] = 10; /* one sample */
     config.value[ADAPTIVE_FAST_MS] = 1;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made(&filter_law_adaptive, &config);
     TEST_ASSERT_EQUAL_UINT16(39322, f.own.adaptive.slow_uq16);
     TEST_ASSERT_EQUAL_UINT16(39322, f.own.adaptive.fast_uq16);
     config.value[ADAPTIVE_SLOW_MS] = 60000; /* 6000 samples */
@@ -208,7 +197,7 @@ static void memories_are_limited(void)
     TEST_ASSERT_EQUAL_UINT16(6553, f.own.adaptive.fast_uq16);
 }
 
-static void reset_keeps_the_noise(void)
+TEST(reset_keeps_the_noise)
 {
     filter_t f = settled(100, true);
     filter_t before = f;
@@ -223,7 +212,7 @@ static void reset_keeps_the_noise(void)
 }
 
 /* The one rule for all rates: fast 80 ms and two samples, slow 20 samples and half a second, 3 sigma below 20 Hz. */
-static void defaults_follow_one_rule(void)
+TEST(defaults_follow_one_rule)
 {
     static const uint16_t rates_dhz[] = { 100, 199, 200, 250, 500, 1000, 2000, 4000, 8000, 40000 };
     for (uint8_t i = 0; i < 10u; i++) {
@@ -236,11 +225,9 @@ static void defaults_follow_one_rule(void)
 }
 
 /* A sigma of 3 LSB learnt from noise; a restart that lost it would have the configured 1.7, the root of R = 3. */
-static void restart_keeps_what_was_learnt_of_the_noise(void)
+TEST(restart_keeps_what_was_learnt_of_the_noise)
 {
-    filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made_default(&filter_law_adaptive, 1000);
     for (uint16_t k = 0; k < 2000U; k++) {
         uint32_t v = random32(&random_state);
         int16_t sum = (int16_t)((v & 15U) + ((v >> 8) & 15U) + ((v >> 16) & 15U) + ((v >> 24) & 15U));
@@ -250,23 +237,4 @@ static void restart_keeps_what_was_learnt_of_the_noise(void)
     TEST_ASSERT_TRUE(scatter_lsb_uq24 > 37520000UL); /* sqrt(5) LSB */
     filter_restart(&f);
     TEST_ASSERT_EQUAL_UINT32(scatter_lsb_uq24, f.own.adaptive.scatter_lsb_uq24);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(an_isolated_outlier_moves_nothing);
-    RUN_TEST(without_the_guard_an_outlier_passes);
-    RUN_TEST(a_burst_of_nine_is_not_believed);
-    RUN_TEST(a_jump_that_stays_is_believed);
-    RUN_TEST(motion_is_followed_and_shortens_the_memory);
-    RUN_TEST(memory_grows_by_half_a_sample);
-    RUN_TEST(what_identification_off_means);
-    RUN_TEST(a_gap_breaks_agreement);
-    RUN_TEST(a_gated_sample_keeps_the_saturation);
-    RUN_TEST(memories_are_limited);
-    RUN_TEST(reset_keeps_the_noise);
-    RUN_TEST(defaults_follow_one_rule);
-    RUN_TEST(restart_keeps_what_was_learnt_of_the_noise);
-    return UNITY_END();
 }

@@ -8,15 +8,12 @@
 #include "support/chain.h"
 #include "support/random.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>
 
 enum { RUNS = 1500, SAMPLES = 400, FROM = 200, CLEAN = 5 };
-
-void setUp(void) {}
-void tearDown(void) {}
 
 /* Table 1 of paper 002 at 40.5 Hz, an LSB 0.02 degrees: R 0.0064 degree^2, q 0.0009 (degree/s)^2 a sample. */
 static const double period_s = 0.0247, lsb_deg = 0.02, sigma_deg = 0.08, drive_deg_s = 0.03, times = 20.0;
@@ -70,7 +67,7 @@ static double efficiency(outliers_t outliers)
     return square[0] / square[1];
 }
 
-static void table_1_is_stood(void)
+TEST(table_1_is_stood)
 {
     static const struct {
         const char *name;
@@ -97,7 +94,7 @@ static double roll_deg(chain_t chains[3], const stream_row_t *row)
 }
 
 /* The picture that `make sim` draws: 0.32 degrees rms and 2.2 at most behind the first second. */
-static void the_readmes_stream_is_stood(void)
+TEST(the_readmes_stream_is_stood)
 {
     stream_t stream;
     TEST_ASSERT_TRUE(stream_load(&stream, "sim/streams/outliers-15pct.csv"));
@@ -122,9 +119,7 @@ static void the_readmes_stream_is_stood(void)
 /* White noise at rest, ten minutes: variance over that of the slowest memory, and how often it was shortened. */
 static void at_rest(uint16_t rate_dhz, double sigma_lsb, double *variance, double *per_minute)
 {
-    filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_adaptive, rate_dhz);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made_default(&filter_law_adaptive, rate_dhz);
     test_random_t random;
     random_seed(&random, rate_dhz);
     long samples = 60L * rate_dhz;
@@ -148,7 +143,7 @@ static void at_rest(uint16_t rate_dhz, double sigma_lsb, double *variance, doubl
     *per_minute = 6.0 * (double)openings * rate_dhz / (double)counted;
 }
 
-static void noise_alone_seldom_shortens_the_memory(void)
+TEST(noise_alone_seldom_shortens_the_memory)
 {
     static const uint16_t rates_dhz[] = { 250, 500, 1000, 2000, 4000, 8000 };
     for (size_t i = 0; i < sizeof rates_dhz / sizeof rates_dhz[0]; i++) {
@@ -163,15 +158,12 @@ static void noise_alone_seldom_shortens_the_memory(void)
 }
 
 /* One bad sample among good ones is a stray; a second within 64 makes the gate half as wide, good ones undo it. */
-static void strays_tighten_the_gate_and_good_samples_open_it(void)
+TEST(strays_tighten_the_gate_and_good_samples_open_it)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
     config.value[ADAPTIVE_IDENTIFY] = 0;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
-    for (int k = 0; k < 300; k++) {
-        (void)filter_update(&f, 100);
-    }
+    filter_t f = made(&filter_law_adaptive, &config);
+    feed(&f, 100, 300);
     uint32_t wide = f.own.adaptive.gate_lsb_uq16;
     for (int bad = 0; bad < 2; bad++) {
         (void)filter_update(&f, 900);
@@ -190,19 +182,16 @@ static void strays_tighten_the_gate_and_good_samples_open_it(void)
     (void)filter_update(&f, 900);
     filter_restart(&f);
     (void)filter_update(&f, 100);
-    for (int k = 1; k < 10; k++) {
-        (void)filter_update(&f, 100);
-    }
+    feed(&f, 100, 9);
     TEST_ASSERT_EQUAL_UINT8(0, f.own.adaptive.strays);
 }
 
 /* What is expected of an innovation stops at 256 LSB: 144 of noise and 128 of its mean would pass 16 bits. */
-static void the_gate_does_not_wrap(void)
+TEST(the_gate_does_not_wrap)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
     config.value[ADAPTIVE_GUARD_SIGMA_Q8] = 4096;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made(&filter_law_adaptive, &config);
     filter_reset(&f, 0);
     f.own.adaptive.scatter_lsb_uq24 = ADAPTIVE_SCATTER_MAX_UQ24;
     f.own.adaptive.k_uq32 = (uint32_t)TRACKER_K_MAX_UQ16 << 16;
@@ -234,22 +223,10 @@ static double followed_lsb(double share)
 }
 
 /* Until it is believed, after 120 ms, the estimate follows as far among 15 % outliers as without them. */
-static void a_jump_among_outliers_is_not_late(void)
+TEST(a_jump_among_outliers_is_not_late)
 {
     double clean_lsb = followed_lsb(0.0);
     double among_lsb = followed_lsb(0.15);
     printf("80 ms after a jump of 132 LSB: %.1f LSB, among outliers %.1f\n", clean_lsb, among_lsb);
     TEST_ASSERT_TRUE(among_lsb >= clean_lsb);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(table_1_is_stood);
-    RUN_TEST(the_readmes_stream_is_stood);
-    RUN_TEST(noise_alone_seldom_shortens_the_memory);
-    RUN_TEST(strays_tighten_the_gate_and_good_samples_open_it);
-    RUN_TEST(the_gate_does_not_wrap);
-    RUN_TEST(a_jump_among_outliers_is_not_late);
-    return UNITY_END();
 }

@@ -1,10 +1,9 @@
 /* adaptive against its double twin step by step, against the float filter it grew from, and in theory. */
 #include "adaptive.h"
 #include "reference/adaptive.h"
-#include "support/laws.h"
 #include "support/random.h"
 #include "support/roll.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -15,8 +14,6 @@ void setUp(void)
 {
     random_state = SEED;
 }
-void tearDown(void) {}
-
 static reference_adaptive_value_t value_of(const filter_t *f)
 {
     const filter_adaptive_t *a = &f->own.adaptive;
@@ -133,12 +130,11 @@ static bool compare_step(filter_t *f, reference_adaptive_t *r, int16_t z)
 /* Decisions that the bound leaves open are counted. */
 static void run_case(const case_t *c, int verdicts[5])
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_adaptive, c->rate_dhz);
     config.value[ADAPTIVE_GUARD_SIGMA_Q8] = c->guard_q8;
     config.value[ADAPTIVE_IDENTIFY] = c->identify;
     config.value[ADAPTIVE_R_LSB2_Q8] = (int32_t)lrint(fmin(256000.0, c->sigma * c->sigma * 256.0));
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+    filter_t f = made(&filter_law_adaptive, &config);
     signal_t signal = { c->sigma, 0.0, c->outliers, 0, c->wild };
     for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
         (void)filter_update(&f, next_sample(&signal, k, 7000.0 / c->rate_dhz));
@@ -161,7 +157,7 @@ static void run_case(const case_t *c, int verdicts[5])
     TEST_ASSERT_TRUE(open < SAMPLES / 20);
 }
 
-static void every_step_is_that_of_the_reference(void)
+TEST(every_step_is_that_of_the_reference)
 {
     static const case_t cases[] = {
         { "10 Hz", 100, 768, 1, 12.0, 0.05, false },
@@ -187,14 +183,13 @@ static void every_step_is_that_of_the_reference(void)
  * Starts with a bad read among the first samples, guarded or not: the scatter's opening, term by term. The R that they
  * begin with is 80 times too small.
  */
-static void a_start_with_a_bad_read_is_that_of_the_reference(void)
+TEST(a_start_with_a_bad_read_is_that_of_the_reference)
 {
     int compared = 0;
     for (int start = 0; start < 2000; start++) {
-        filter_t f;
         filter_config_t config = filter_defaults(&filter_law_adaptive, 100);
         config.value[ADAPTIVE_GUARD_SIGMA_Q8] = (start % 2 == 0) ? config.value[ADAPTIVE_GUARD_SIGMA_Q8] : 0;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+        filter_t f = made(&filter_law_adaptive, &config);
         reference_adaptive_t r;
         for (int k = 0; k < 60; k++) {
             int16_t z = (k == start % 13) ? 4095 : (int16_t)lrint(200.0 + 5.0 * noise_of_one());
@@ -210,13 +205,12 @@ static void a_start_with_a_bad_read_is_that_of_the_reference(void)
 }
 
 /* k = 2 / memory, share 0.4 k, threshold 2.9 sqrt(share / 2) but at most 0.845; the factor is rounded to 2^-8. */
-static void parameters_are_those_of_the_equations(void)
+TEST(parameters_are_those_of_the_equations)
 {
     static const uint16_t rates_dhz[] = { 100, 250, 500, 1000, 4000, 8000 };
     for (int i = 0; i < 6; i++) {
-        filter_t f;
         filter_config_t config = filter_defaults(&filter_law_adaptive, rates_dhz[i]);
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+        filter_t f = made(&filter_law_adaptive, &config);
         double fast = fmin(0.6, 20000.0 / ((double)config.value[ADAPTIVE_FAST_MS] * rates_dhz[i]));
         double slow = 20000.0 / ((double)config.value[ADAPTIVE_SLOW_MS] * rates_dhz[i]);
         double share = 0.4 * fast;
@@ -230,7 +224,7 @@ static void parameters_are_those_of_the_equations(void)
 }
 
 /* Fading memory: noise gain by the Lyapunov equation, by the impulse response, and in closed form. */
-static void fading_memory_has_its_closed_forms(void)
+TEST(fading_memory_has_its_closed_forms)
 {
     for (int i = 1; i < 60; i++) {
         double k = 0.01 * i;
@@ -279,7 +273,7 @@ static double settled_scatter(int32_t slow_ms, int32_t fast_ms, double bad, int3
  * half of its variance times the curvature 0.55 over 1 - slope, 0.87), and 0.8 % for chance (three standard errors).
  * With one that changes it lies between those of the slowest and the shortest.
  */
-static void the_scatter_settles_where_its_terms_say(void)
+TEST(the_scatter_settles_where_its_terms_say)
 {
     static const int32_t memories_ms[] = { 33, 100, 200, 500 };
     filter_t f;
@@ -307,8 +301,7 @@ static void the_scatter_settles_where_its_terms_say(void)
 
 static void assert_probed_variance(const filter_t *f, double r_lsb2)
 {
-    filter_probe_t probe;
-    filter_probe(f, &probe);
+    filter_probe_t probe = probe_of(f);
     double expected = r_lsb2 * reference_fading_noise_gain(f->own.adaptive.k_uq32 / 4294967296.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.002 * expected + 1.0 / 256.0, expected, probe.p_lsb2_q8 / 256.0);
 }
@@ -316,14 +309,13 @@ static void assert_probed_variance(const filter_t *f, double r_lsb2)
 /*
  * The probe's variance is R times that noise gain, at every memory; identified, R is the scatter's square (8.8 bits).
  */
-static void variance_of_the_probe_is_the_closed_form(void)
+TEST(variance_of_the_probe_is_the_closed_form)
 {
     for (int identify = 0; identify < 2; identify++) {
-        filter_t f;
         filter_config_t config = filter_defaults(&filter_law_adaptive, 1000);
         config.value[ADAPTIVE_IDENTIFY] = identify;
         config.value[ADAPTIVE_R_LSB2_Q8] = 100u * 256u;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+        filter_t f = made(&filter_law_adaptive, &config);
         for (int k = 0; k < 100; k++) {
             (void)filter_update(&f, (identify != 0) ? (int16_t)lrint(20.0 * noise_of_one()) : 0);
             if (k >= FILTER_WARM_UP_SAMPLES) {
@@ -345,8 +337,7 @@ static void both_mean_squares(roll_profile_t profile, bool identify, roll_window
     roll_windows_t sums[2] = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0 } };
     for (int run = 0; run < RUNS; run++) {
         reference_fading_t r = { 0.0, 0.0, 0.0, 0.0, 0 };
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+        filter_t f = made(&filter_law_adaptive, &config);
         for (int k = 0; k < ROLL_SAMPLES; k++) {
             double truth = roll_truth_deg(profile, 0.1 * k);
             int16_t z = roll_measured_lsb(&random_state, truth, 0.0);
@@ -364,7 +355,7 @@ static void both_mean_squares(roll_profile_t profile, bool identify, roll_window
  * errors of a window's mean), and adaptive without its guard is at most 8 % worse in any window, its noise given or
  * identified.
  */
-static void unguarded_reaches_the_float_filter(void)
+TEST(unguarded_reaches_the_float_filter)
 {
     static const roll_windows_t notes[STILL] = {
         { 0.150, 0.264, 0.169 }, { 0.152, 0.419, 0.156 }, { 0.153, 0.475, 0.163 }, { 0.151, 0.607, 0.182 }
@@ -384,17 +375,4 @@ static void unguarded_reaches_the_float_filter(void)
             TEST_ASSERT_TRUE(f.after <= 1.08 * r.after);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(every_step_is_that_of_the_reference);
-    RUN_TEST(a_start_with_a_bad_read_is_that_of_the_reference);
-    RUN_TEST(parameters_are_those_of_the_equations);
-    RUN_TEST(fading_memory_has_its_closed_forms);
-    RUN_TEST(the_scatter_settles_where_its_terms_say);
-    RUN_TEST(variance_of_the_probe_is_the_closed_form);
-    RUN_TEST(unguarded_reaches_the_float_filter);
-    return UNITY_END();
 }

@@ -1,14 +1,9 @@
 /* auto: gate and restart of the members, the choice by the bounded scores, gaps. */
 #include "support/auto.h"
-#include "support/laws.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test_law.h"
 
 /* At rest without noise: four on end beyond every gate move nothing, the fifth restarts, and it stays there. */
-static void test_four_outliers_move_nothing_and_the_fifth_restarts(void)
+TEST(test_four_outliers_move_nothing_and_the_fifth_restarts)
 {
     for (int16_t side = -1; side <= 1; side = (int16_t)(side + 2)) {
         filter_t f = made_at_rest(100);
@@ -24,7 +19,7 @@ static void test_four_outliers_move_nothing_and_the_fifth_restarts(void)
 }
 
 /* By turns to either side no run becomes long. */
-static void test_refused_to_either_side_never_restart(void)
+TEST(test_refused_to_either_side_never_restart)
 {
     filter_t f = made_at_rest(0);
     for (int n = 0; n < 400; n++) {
@@ -35,7 +30,7 @@ static void test_refused_to_either_side_never_restart(void)
 }
 
 /* Six sigmas, the slow member twelve: at it a sample is used, a count beyond it is not. */
-static void test_the_slow_member_has_twice_the_gate(void)
+TEST(test_the_slow_member_has_twice_the_gate)
 {
     for (int16_t z = GATE_LSB; z <= 2 * GATE_LSB + 1; z++) {
         filter_t f = made_at_rest(0);
@@ -47,12 +42,11 @@ static void test_the_slow_member_has_twice_the_gate(void)
 }
 
 /* Without a gate all are used, up to the rails. */
-static void test_without_a_gate_nothing_is_refused(void)
+TEST(test_without_a_gate_nothing_is_refused)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_auto, 1000);
     config.value[AUTO_GATE_SIGMA_Q8] = 0;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_auto, &config));
+    filter_t f = made(&filter_law_auto, &config);
     filter_reset(&f, -4096);
     (void)filter_update(&f, 4095);
     TEST_ASSERT_EQUAL_HEX8(0, f.flags & FILTER_GATED);
@@ -67,7 +61,7 @@ static void set_scores(filter_t *f, uint32_t slow, uint32_t middle, uint32_t fas
 }
 
 /* Samples on the prediction take an eighth off every score, which leaves their order. */
-static void test_the_least_score_is_chosen_beyond_the_hysteresis(void)
+TEST(test_the_least_score_is_chosen_beyond_the_hysteresis)
 {
     static const struct {
         uint32_t slow, middle, fast;
@@ -88,7 +82,7 @@ static void test_the_least_score_is_chosen_beyond_the_hysteresis(void)
 }
 
 /* Mean of eight: a score goes (7/8)^n of its way to the square of the innovation, held to 64 R. */
-static void test_a_score_is_the_bounded_mean_over_eight_samples(void)
+TEST(test_a_score_is_the_bounded_mean_over_eight_samples)
 {
     filter_t f = made_at_rest(0);
     /* eight times the mean of 1024 LSB^2 each: 1024, 1920, 2704, 3390 */
@@ -105,7 +99,7 @@ static void test_a_score_is_the_bounded_mean_over_eight_samples(void)
 }
 
 /* What all members meet alike does not decide: whatever its size, one outlier changes no choice. */
-static void test_one_outlier_changes_no_choice(void)
+TEST(test_one_outlier_changes_no_choice)
 {
     for (int16_t size = 100; size <= 4000; size = (int16_t)(size + 100)) {
         filter_t f = made_at_rest(0);
@@ -117,7 +111,7 @@ static void test_one_outlier_changes_no_choice(void)
     }
 }
 
-static void test_the_middle_member_predicts_what_is_missing(void)
+TEST(test_the_middle_member_predicts_what_is_missing)
 {
     filter_t f = made_at_rest(0);
     for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
@@ -126,8 +120,7 @@ static void test_the_middle_member_predicts_what_is_missing(void)
     }
     TEST_ASSERT_EQUAL_INT32(2 * 65536L + 2 * 32768L, coast(&f));
     TEST_ASSERT_EQUAL_HEX8(FILTER_COASTED, f.flags);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_INT32(2 * 65536L + 2 * 32768L, probe.x_lsb_q16);
     TEST_ASSERT_EQUAL_INT32(2 * 32768L, probe.rate_lsb_q16);
     for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
@@ -145,7 +138,7 @@ static void assert_default_memory(uint16_t rate_dhz, uint32_t samples, uint32_t 
 }
 
 /* 28, 11 and 5 samples, at least 500, 200 and 80 ms; within the range, not wrapped, at a rate that init refuses too. */
-static void test_default_memories_are_in_range_at_every_rate(void)
+TEST(test_default_memories_are_in_range_at_every_rate)
 {
     for (uint32_t rate_dhz = 1; rate_dhz <= FILTER_RATE_MAX_DHZ; rate_dhz++) {
         filter_t f;
@@ -156,19 +149,4 @@ static void test_default_memories_are_in_range_at_every_rate(void)
         TEST_ASSERT_EQUAL_UINT8(rate_dhz >= FILTER_RATE_MIN_DHZ ? FILTER_ACCEPTED : FILTER_REFUSED_RATE,
                                 filter_init(&f, &filter_law_auto, &config));
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_four_outliers_move_nothing_and_the_fifth_restarts);
-    RUN_TEST(test_refused_to_either_side_never_restart);
-    RUN_TEST(test_the_slow_member_has_twice_the_gate);
-    RUN_TEST(test_without_a_gate_nothing_is_refused);
-    RUN_TEST(test_the_least_score_is_chosen_beyond_the_hysteresis);
-    RUN_TEST(test_a_score_is_the_bounded_mean_over_eight_samples);
-    RUN_TEST(test_one_outlier_changes_no_choice);
-    RUN_TEST(test_the_middle_member_predicts_what_is_missing);
-    RUN_TEST(test_default_memories_are_in_range_at_every_rate);
-    return UNITY_END();
 }

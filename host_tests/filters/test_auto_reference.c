@@ -1,20 +1,15 @@
 /* auto: its members against the linear filter in double, what follows from its equations. */
 #include "support/auto.h"
-#include "support/laws.h"
 #include "support/random.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #include <math.h>
 
 #define SEED 80004u
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 static const double memories[AUTO_MEMBERS] = { 50.0, 20.0, 8.0 };
 
-static void test_memories_are_those_of_the_configuration(void)
+TEST(test_memories_are_those_of_the_configuration)
 {
     filter_t f = made_at_rest(0);
     for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
@@ -69,7 +64,7 @@ static double member_bound(double k)
     return response_bound(k, dx, dv);
 }
 
-static void test_members_are_fading_memories(void)
+TEST(test_members_are_fading_memories)
 {
     test_random_t random;
     random_seed(&random, SEED);
@@ -89,12 +84,10 @@ static void test_members_are_fading_memories(void)
 }
 
 /* Behind a restart k = 0.6 and then k - k^2 / 4: half a sample of memory more per sample, up to the member's own. */
-static void test_the_memory_grows_by_half_a_sample_per_sample(void)
+TEST(test_the_memory_grows_by_half_a_sample_per_sample)
 {
     filter_t f = made_at_rest(0);
-    for (int n = 0; n < 5; n++) {
-        (void)filter_update(&f, 1000);
-    }
+    feed(&f, 1000, 5);
     double k = 0.6;
     for (int n = 0; n < 200; n++) {
         for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
@@ -110,7 +103,7 @@ static void test_the_memory_grows_by_half_a_sample_per_sample(void)
 }
 
 /* Two sigmas of its rate: sqrt(2 t^3) sigmas of a sample, t = k / (2 - k), as the linear filter's equations have it. */
-static void test_a_gap_stops_a_rate_within_two_of_its_sigmas(void)
+TEST(test_a_gap_stops_a_rate_within_two_of_its_sigmas)
 {
     double k = 2.0 / memories[AUTO_MIDDLE];
     double t = k / (2.0 - k);
@@ -138,7 +131,7 @@ static void test_a_gap_stops_a_rate_within_two_of_its_sigmas(void)
 }
 
 /* R k (10 - 14 k + 5 k^2) / (2 - k)^3 is what the linear recursion gives: sum of the squared response. */
-static void test_the_variance_reported_is_that_of_the_member_shown(void)
+TEST(test_the_variance_reported_is_that_of_the_member_shown)
 {
     for (uint8_t i = 0; i < AUTO_MEMBERS; i++) {
         filter_t f = made_at_rest(0);
@@ -150,19 +143,7 @@ static void test_the_variance_reported_is_that_of_the_member_shown(void)
             step_line(&s, k, (n == 0) ? 1.0 : 0.0);
             sum += s.x * s.x;
         }
-        filter_probe_t probe;
-        filter_probe(&f, &probe);
+        filter_probe_t probe = probe_of(&f);
         TEST_ASSERT_DOUBLE_WITHIN(0.002 * sum * R_LSB2_Q8 + 1.0, sum * R_LSB2_Q8, probe.p_lsb2_q8);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_memories_are_those_of_the_configuration);
-    RUN_TEST(test_members_are_fading_memories);
-    RUN_TEST(test_the_memory_grows_by_half_a_sample_per_sample);
-    RUN_TEST(test_a_gap_stops_a_rate_within_two_of_its_sigmas);
-    RUN_TEST(test_the_variance_reported_is_that_of_the_member_shown);
-    return UNITY_END();
 }

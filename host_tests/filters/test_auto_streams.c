@@ -1,21 +1,17 @@
 /* auto on the tilt streams that it is made for, beside the filters that it is to beat. */
 #include "support/random.h"
+#include "support/test_law.h"
 #include "support/tilt_phases.h"
-#include "unity.h"
 
 #include <math.h>
 #include <stdio.h>
 
 #define SEED 80004u
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 enum { FRESH_RUNS = 200, FRESH_SEED = 5001 };
 
 /* The streams are what their header says: shares of missing samples and of outliers, noise, by kind. */
-static void test_streams_are_as_described(void)
+TEST(test_streams_are_as_described)
 {
     double missing = 0.0;
     double wide = 0.0;
@@ -50,13 +46,12 @@ static void test_streams_are_as_described(void)
 
 static filter_t begun(const filter_law_t *law, const filter_config_t *config)
 {
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, law, config));
+    filter_t f = made(law, config);
     return f;
 }
 
 /* As shipped at 10 Hz; the others with the parameters that board_phases of make papers finds on other runs. */
-static void test_errors_on_the_tilt_streams(void)
+TEST(test_errors_on_the_tilt_streams)
 {
     filter_config_t of_auto = filter_defaults(&filter_law_auto, TILT_RATE_DHZ);
     of_auto.value[AUTO_R_LSB2_Q8] = (int32_t)TILT_R_LSB2_Q8;
@@ -108,16 +103,15 @@ static void test_errors_on_the_tilt_streams(void)
 }
 
 /* 40 degrees at the streams' rate and noise: back within the five of the run and ten more, to a sigma of the noise. */
-static void test_a_step_is_acquired_within_fifteen_samples(void)
+TEST(test_a_step_is_acquired_within_fifteen_samples)
 {
     test_random_t random;
     random_seed(&random, SEED);
     double sigma_lsb = TILT_SIGMA_DEG * TILT_LSB_PER_DEGREE;
     for (int run = 0; run < 200; run++) {
-        filter_t f;
         filter_config_t config = filter_defaults(&filter_law_auto, TILT_RATE_DHZ);
         config.value[AUTO_R_LSB2_Q8] = TILT_R_LSB2_Q8;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_auto, &config));
+        filter_t f = made(&filter_law_auto, &config);
         for (int n = 0; n < 200; n++) {
             (void)filter_update(&f, as_sample(sigma_lsb * random_normal(&random)));
         }
@@ -128,13 +122,4 @@ static void test_a_step_is_acquired_within_fifteen_samples(void)
         }
         TEST_ASSERT_DOUBLE_WITHIN(3.0 * sigma_lsb, step_lsb, x / 65536.0);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_streams_are_as_described);
-    RUN_TEST(test_errors_on_the_tilt_streams);
-    RUN_TEST(test_a_step_is_acquired_within_fifteen_samples);
-    return UNITY_END();
 }

@@ -4,19 +4,15 @@
 #include "reference/filters.h"
 #include "stream.h"
 #include "support/roles.h"
+#include "support/test.h"
 #include "tilt.h"
 #include "tracker.h"
-#include "unity.h"
 
 #include <math.h>
 #include <stdio.h>
 
 #define FIRST_ROW 10U /* warm-up rows of the filter and as many again are not scored */
 #define DEGREES (180.0 / 3.14159265358979323846)
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* RMS errors of roll, degrees. */
 typedef struct {
@@ -147,7 +143,7 @@ static score_t run(const char *path, double r_lsb2)
  * A Kalman filter with a gate beside one without. Same R, q and rate for both and for their references: R is the
  * generator's 4 LSB rms, 16, plus 1/12 of rounding.
  */
-static void outliers_cost_the_robust_one_a_quarter_of_the_plain_one(void)
+TEST(outliers_cost_the_robust_one_a_quarter_of_the_plain_one)
 {
     score_t s = run("sim/streams/outliers-15pct.csv", 16.0 + 1.0 / 12.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.01 * s.plain_double, s.plain_double, s.plain);
@@ -156,13 +152,13 @@ static void outliers_cost_the_robust_one_a_quarter_of_the_plain_one(void)
 }
 
 /* With R estimated the estimate is about four times too high, and the gate still does its work. */
-static void outliers_with_estimated_noise(void)
+TEST(outliers_with_estimated_noise)
 {
     score_t s = run("sim/streams/outliers-15pct.csv", 0.0);
     TEST_ASSERT_TRUE(s.robust <= 0.25 * s.plain);
 }
 
-static void clean_streams_lose_at_most_five_percent(void)
+TEST(clean_streams_lose_at_most_five_percent)
 {
     static const char *const paths[] = {
         "sim/streams/rest-0.7lsb.csv", "sim/streams/rest-2lsb.csv",        "sim/streams/rest-4lsb.csv",
@@ -179,7 +175,7 @@ static void clean_streams_lose_at_most_five_percent(void)
 }
 
 /* The noise of each stream, known: fixed point within 1 % of double on clean data too. */
-static void fixed_point_equals_double_on_clean_streams(void)
+TEST(fixed_point_equals_double_on_clean_streams)
 {
     static const char *const paths[] = { "sim/streams/rest-2lsb.csv", "sim/streams/tilt-slow.csv",
                                          "sim/streams/tilt-fast.csv", "sim/streams/through-roll-180.csv" };
@@ -188,14 +184,4 @@ static void fixed_point_equals_double_on_clean_streams(void)
         TEST_ASSERT_DOUBLE_WITHIN(0.01 * s.plain_double, s.plain_double, s.plain);
         TEST_ASSERT_DOUBLE_WITHIN(0.01 * s.robust_double, s.robust_double, s.robust);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(outliers_cost_the_robust_one_a_quarter_of_the_plain_one);
-    RUN_TEST(outliers_with_estimated_noise);
-    RUN_TEST(clean_streams_lose_at_most_five_percent);
-    RUN_TEST(fixed_point_equals_double_on_clean_streams);
-    return UNITY_END();
 }

@@ -8,7 +8,7 @@
 #include "support/chain.h"
 #include "support/filters.h"
 #include "support/random.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,9 +23,6 @@ static const double swing_lsb = 256.0 * 0.4848, swing_hz = 0.5, sigma_lsb = 2.0,
 static const double away_lsb = 40.0;
 
 static int trials = 1000;
-
-void setUp(void) {}
-void tearDown(void) {}
 
 typedef struct {
     test_random_t random;
@@ -76,7 +73,7 @@ static distance_t trial_of(filter_kind_t kind, unsigned trial)
     return mean;
 }
 
-static void every_law_is_back_but_that_as_published(void)
+TEST(every_law_is_back_but_that_as_published)
 {
     bool good = true;
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
@@ -100,7 +97,5 @@ int main(int argc, char **argv)
     if (argc > 1) {
         trials = atoi(argv[1]);
     }
-    UNITY_BEGIN();
-    RUN_TEST(every_law_is_back_but_that_as_published);
-    return UNITY_END();
+    return test_all();
 }

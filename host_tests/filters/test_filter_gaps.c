@@ -2,8 +2,7 @@
  * Generic property, over the list of filters: a filter that missed up to 200 samples, at rest or in motion, predicts
  * meanwhile and is soon back where one that missed none is. Runs on the PC and on the chip.
  */
-#include "support/filters.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 /* Where two filters that have recovered may differ: each is within 1/4 LSB and 1/32 for rounding. */
 #define RECOVERED_LSB_Q16 (2 * (65536 / 4 + 65536 / 32))
@@ -15,15 +14,6 @@
 #define DRIFT_LSB_Q16 (65536 / 128)
 
 enum { GAP_MAX = 200, SETTLING = 300, RAMP_LSB = 2 };
-
-void setUp(void) {}
-
-void tearDown(void) {}
-
-static void make(filter_t *f, uint8_t kind, uint16_t rate_dhz)
-{
-    TEST_ASSERT_TRUE(init_default(f, (filter_kind_t)kind, rate_dhz));
-}
 
 /*
  * After a gap the filter is back, recovery_samples later and for good, where one without a gap is. slope: of the motion
@@ -52,8 +42,7 @@ static void assert_recovery(const filter_t *settled, int16_t slope, bool goes_on
 
 static void assert_recovery_from_all_gaps(uint8_t kind, int16_t slope, bool goes_on)
 {
-    filter_t f;
-    make(&f, kind, 1000);
+    filter_t f = made_kind(kind, 1000);
     filter_reset(&f, (int16_t)(-slope * SETTLING));
     for (int16_t k = 1; k <= SETTLING; k++) {
         (void)filter_update(&f, (int16_t)(-slope * (SETTLING - k)));
@@ -63,7 +52,7 @@ static void assert_recovery_from_all_gaps(uint8_t kind, int16_t slope, bool goes
     }
 }
 
-static void coast_at_rest_and_recover(void)
+TEST(coast_at_rest_and_recover)
 {
     FOR_EACH_KIND(kind)
     {
@@ -71,7 +60,7 @@ static void coast_at_rest_and_recover(void)
     }
 }
 
-static void coast_on_a_ramp_and_recover(void)
+TEST(coast_on_a_ramp_and_recover)
 {
     FOR_EACH_KIND(kind)
     {
@@ -80,20 +69,11 @@ static void coast_on_a_ramp_and_recover(void)
     }
 }
 
-static void coast_through_the_end_of_a_ramp_and_recover(void)
+TEST(coast_through_the_end_of_a_ramp_and_recover)
 {
     FOR_EACH_KIND(kind)
     {
         assert_recovery_from_all_gaps(kind, RAMP_LSB, false);
         assert_recovery_from_all_gaps(kind, -RAMP_LSB, false);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(coast_at_rest_and_recover);
-    RUN_TEST(coast_on_a_ramp_and_recover);
-    RUN_TEST(coast_through_the_end_of_a_ramp_and_recover);
-    return UNITY_END();
 }

@@ -1,36 +1,30 @@
 /*
  * Guards that ordinary samples hardly reach: the borrow of P22, the hysteresis of R's estimate, the range of a sample.
  */
-#include <stdlib.h>
 
 #include "kalman.h"
 #include "noise.h"
-#include "support/filters.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #define ONE_UQ26 0x4000000u
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
-static void start(filter_t *f, uint32_t p11, uint32_t p12, uint32_t p22)
+static filter_t started(uint32_t p11, uint32_t p12, uint32_t p22)
 {
     filter_config_t config = filter_defaults(filter_listed(plain_kind()), 1000);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, filter_listed(plain_kind()), &config));
-    filter_reset(f, 0);
-    f->own.kalman.p = (filter_covariance_t){ p11, p12, p22 };
+    filter_t f = made(filter_listed(plain_kind()), &config);
+    filter_reset(&f, 0);
+    f.own.kalman.p = (filter_covariance_t){ p11, p12, p22 };
+    return f;
 }
 
 /*
  * P / R = (0, 1; 1, 1/2) is no covariance. Predicted: P12 = 1.5, P11 = 2.5, P22 = 0.5 + q; update:
  * P22 - P12^2 / (P11 + 1) = 0.5 - 0.643 + q < 0: rounded to 0, not wrapped to 63.9.
  */
-static void test_p22_does_not_wrap_below_zero(void)
+TEST(test_p22_does_not_wrap_below_zero)
 {
-    filter_t f;
-    start(&f, 0, ONE_UQ26, ONE_UQ26 / 2);
+    filter_t f = started(0, ONE_UQ26, ONE_UQ26 / 2);
     TEST_ASSERT_TRUE(f.own.kalman.q22_uq26 < ONE_UQ26 / 10);
     (void)filter_update(&f, 10);
     TEST_ASSERT_NOT_EQUAL_UINT16(0, f.gain_uq16);
@@ -41,10 +35,9 @@ static void test_p22_does_not_wrap_below_zero(void)
  * The twin: with P22 = 1 the update leaves 1 - 0.643 + q, exact to the gain's 1.5 counts of 2^-16 (0.643 x 3.5 x
  * 2.3e-5).
  */
-static void test_p22_that_stays_positive_is_kept(void)
+TEST(test_p22_that_stays_positive_is_kept)
 {
-    filter_t f;
-    start(&f, 0, ONE_UQ26, ONE_UQ26);
+    filter_t f = started(0, ONE_UQ26, ONE_UQ26);
     /* predicted: P12 = 2, P11 = 3, P22 = 1 + q; P12^2 / (P11 + 1) = 1: with q left over, in UQ6.26 */
     double expected = (double)f.own.kalman.q22_uq26 / ONE_UQ26;
     (void)filter_update(&f, 10);
@@ -62,7 +55,7 @@ static double wanted_r(const noise_t *n)
  * R is passed on when it has left the one in force by more than an eighth, and only then: the amplitude of the readings
  * rises and falls, so that both happen often.
  */
-static void test_r_follows_with_a_hysteresis_of_an_eighth(void)
+TEST(test_r_follows_with_a_hysteresis_of_an_eighth)
 {
     noise_t n;
     filter_noise_init(&n, 1000, false);
@@ -93,8 +86,7 @@ static void test_r_follows_with_a_hysteresis_of_an_eighth(void)
 /* While warming up and when running, a sample outside -4096..4095 is the nearest one inside, and flagged. */
 static void assert_clamped(uint8_t kind, uint8_t before, int16_t z_lsb, int16_t nearest_lsb)
 {
-    filter_t f;
-    TEST_ASSERT_TRUE(init_default(&f, (filter_kind_t)kind, 1000));
+    filter_t f = made_kind(kind, 1000);
     for (uint8_t i = 0; i < before; i++) {
         (void)filter_update(&f, (int16_t)(nearest_lsb - nearest_lsb / 100));
     }
@@ -107,7 +99,7 @@ static void assert_clamped(uint8_t kind, uint8_t before, int16_t z_lsb, int16_t 
     TEST_ASSERT_EQUAL_MEMORY(&of_nearest, &f, sizeof f);
 }
 
-static void test_a_sample_outside_the_range_is_clamped_and_flagged(void)
+TEST(test_a_sample_outside_the_range_is_clamped_and_flagged)
 {
     FOR_EACH_KIND(kind)
     {
@@ -120,29 +112,17 @@ static void test_a_sample_outside_the_range_is_clamped_and_flagged(void)
     }
 }
 
-static void test_a_sample_at_the_end_of_the_range_is_not_flagged(void)
+TEST(test_a_sample_at_the_end_of_the_range_is_not_flagged)
 {
     static const int16_t ends[] = { 4095, -4096 };
     FOR_EACH_KIND(kind)
     {
         for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
-            filter_t f;
-            TEST_ASSERT_TRUE(init_default(&f, (filter_kind_t)kind, 1000));
+            filter_t f = made_kind(kind, 1000);
             for (uint8_t k = 0; k < 20U; k++) {
                 (void)filter_update(&f, ends[i]);
                 TEST_ASSERT_BITS_LOW(FILTER_SATURATED, f.flags);
             }
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_p22_does_not_wrap_below_zero);
-    RUN_TEST(test_p22_that_stays_positive_is_kept);
-    RUN_TEST(test_r_follows_with_a_hysteresis_of_an_eighth);
-    RUN_TEST(test_a_sample_outside_the_range_is_clamped_and_flagged);
-    RUN_TEST(test_a_sample_at_the_end_of_the_range_is_not_flagged);
-    return UNITY_END();
 }

@@ -4,11 +4,7 @@
 #include "support/filters.h"
 #include "support/random.h"
 #include "support/roles.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test.h"
 
 static test_random_t random_source;
 
@@ -32,7 +28,7 @@ static int32_t some_value(const filter_parameter_t *p, unsigned which)
 }
 
 /* What init takes is what the ranges of the descriptor and `together` take, and it says which of them does not. */
-static void test_ranges_and_together_are_what_init_asks(void)
+TEST(test_ranges_and_together_are_what_init_asks)
 {
     unsigned taken = 0;
     unsigned refused = 0;
@@ -64,7 +60,7 @@ static void test_ranges_and_together_are_what_init_asks(void)
     TEST_ASSERT_TRUE(taken > 10000 && refused > 10000);
 }
 
-static void test_defaults_are_legal_at_each_rate(void)
+TEST(test_defaults_are_legal_at_each_rate)
 {
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         for (uint32_t rate_dhz = FILTER_RATE_MIN_DHZ; rate_dhz <= FILTER_RATE_MAX_DHZ; rate_dhz++) {
@@ -74,7 +70,7 @@ static void test_defaults_are_legal_at_each_rate(void)
     }
 }
 
-static void test_name_and_descriptor_agree(void)
+TEST(test_name_and_descriptor_agree)
 {
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         const filter_law_t *law = filter_listed((filter_kind_t)kind);
@@ -168,7 +164,7 @@ static unsigned judged_by_all(const edge_t *row)
     return count;
 }
 
-static void test_a_refusal_names_the_parameter(void)
+TEST(test_a_refusal_names_the_parameter)
 {
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         assert_refused_for((filter_kind_t)kind, "r", 0);
@@ -180,7 +176,7 @@ static void test_a_refusal_names_the_parameter(void)
 }
 
 /* The first of several, the rate before all; off is no reason; an even run of samples lies within 3..9. */
-static void test_a_refusal_tells_rate_and_combinations_apart(void)
+TEST(test_a_refusal_tells_rate_and_combinations_apart)
 {
     const filter_law_t *robust = filter_listed(robust_kind());
     const filter_law_t *light = filter_listed(light_kind());
@@ -200,15 +196,4 @@ static void test_a_refusal_tells_rate_and_combinations_apart(void)
     config.value[parameter_named(light_kind(), "b0")] = 6554;
     config.value[parameter_named(light_kind(), "a1")] = -65000; /* outside the stability region */
     TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_init(&f, light, &config));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_defaults_are_legal_at_each_rate);
-    RUN_TEST(test_ranges_and_together_are_what_init_asks);
-    RUN_TEST(test_name_and_descriptor_agree);
-    RUN_TEST(test_a_refusal_names_the_parameter);
-    RUN_TEST(test_a_refusal_tells_rate_and_combinations_apart);
-    return UNITY_END();
 }

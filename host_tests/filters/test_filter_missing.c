@@ -2,8 +2,7 @@
  * Generic properties, over the list of filters, of samples that are missing: the verbs that filter_missing is made of
  * (tracker.h), and a filter that warms up again.
  */
-#include "support/filters.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #include <string.h>
 
@@ -18,46 +17,31 @@ void setUp(void)
     random_state = SEED;
 }
 
-void tearDown(void) {}
-
-static void make(filter_t *f, uint8_t kind)
-{
-    TEST_ASSERT_TRUE(init_default(f, (filter_kind_t)kind, 1000));
-}
-
-static filter_probe_t probed(const filter_t *f)
-{
-    filter_probe_t probe;
-    memset(&probe, 0, sizeof probe);
-    filter_probe(f, &probe);
-    return probe;
-}
-
 static int16_t any_sample(void)
 {
     return (int16_t)((int32_t)(random32(&random_state) >> 16) - 32768);
 }
 
 /* On a ramp that ends at 0, long enough for every filter's rate to be right. */
-static void settle_on_ramp(filter_t *f, uint8_t kind, int16_t slope_lsb)
+static filter_t settled_on_ramp(uint8_t kind, int16_t slope_lsb)
 {
-    make(f, kind);
-    filter_reset(f, (int16_t)(-slope_lsb * SETTLING));
+    filter_t f = made_kind(kind, 1000);
+    filter_reset(&f, (int16_t)(-slope_lsb * SETTLING));
     for (int16_t k = 1; k <= SETTLING; k++) {
-        (void)filter_update(f, (int16_t)(-slope_lsb * (SETTLING - k)));
+        (void)filter_update(&f, (int16_t)(-slope_lsb * (SETTLING - k)));
     }
+    return f;
 }
 
 /* Half of 3 LSB per sample, then a quarter: each missing sample moves the estimate by what is left. */
 static void assert_damped(uint8_t kind, int16_t slope_lsb)
 {
-    filter_t f;
-    settle_on_ramp(&f, kind, slope_lsb);
+    filter_t f = settled_on_ramp(kind, slope_lsb);
     for (int32_t part = 2; part <= 16; part *= 2) {
-        int32_t x = probed(&f).x_lsb_q16;
+        int32_t x = probe_of(&f).x_lsb_q16;
         uint8_t flags = f.flags;
         filter_tracker_damp(&f);
-        TEST_ASSERT_EQUAL_INT32(x, probed(&f).x_lsb_q16);
+        TEST_ASSERT_EQUAL_INT32(x, probe_of(&f).x_lsb_q16);
         TEST_ASSERT_EQUAL_UINT8(flags, f.flags);
         for (uint8_t k = 0; k < 3; k++) {
             int32_t before = x;
@@ -67,7 +51,7 @@ static void assert_damped(uint8_t kind, int16_t slope_lsb)
     }
 }
 
-static void test_damp_halves_the_rate_and_moves_nothing(void)
+TEST(test_damp_halves_the_rate_and_moves_nothing)
 {
     FOR_EACH_KIND(kind)
     {
@@ -77,18 +61,17 @@ static void test_damp_halves_the_rate_and_moves_nothing(void)
 }
 
 /* R is 3 LSB^2 at 100 Hz, three sigmas 5.2 LSB: a rate of 5 LSB per sample may be noise, one of 6 is none. */
-static void test_a_gap_stops_only_a_rate_that_may_be_noise(void)
+TEST(test_a_gap_stops_only_a_rate_that_may_be_noise)
 {
     FOR_EACH_KIND(kind)
     {
         for (int16_t slope_lsb = 5; slope_lsb <= 6; slope_lsb++) {
-            filter_t f;
-            settle_on_ramp(&f, kind, slope_lsb);
+            filter_t f = settled_on_ramp(kind, slope_lsb);
             filter_t told = f;
             filter_tracker_fade(&told, true);
-            TEST_ASSERT_EQUAL_INT32(probed(&f).x_lsb_q16, probed(&told).x_lsb_q16);
+            TEST_ASSERT_EQUAL_INT32(probe_of(&f).x_lsb_q16, probe_of(&told).x_lsb_q16);
             if (law_facts((filter_kind_t)kind).rate_is_a_difference && slope_lsb == 5) {
-                TEST_ASSERT_EQUAL_INT32(probed(&f).x_lsb_q16, coast_only(&told));
+                TEST_ASSERT_EQUAL_INT32(probe_of(&f).x_lsb_q16, coast_only(&told));
                 continue;
             }
             for (uint8_t k = 0; k < 3; k++) {
@@ -99,13 +82,12 @@ static void test_a_gap_stops_only_a_rate_that_may_be_noise(void)
 }
 
 /* Halved with its variance: the sample behind a gap is believed less than without, so its noise makes no jump. */
-static void test_damp_leaves_less_gain_after_a_gap(void)
+TEST(test_damp_leaves_less_gain_after_a_gap)
 {
     FOR_EACH_KIND(kind)
     {
-        filter_t damped;
-        settle_on_ramp(&damped, kind, 0);
-        uint16_t steady_uq16 = probed(&damped).gain_uq16;
+        filter_t damped = settled_on_ramp(kind, 0);
+        uint16_t steady_uq16 = probe_of(&damped).gain_uq16;
         filter_t plain = damped;
         for (uint8_t k = 1; k <= 10U; k++) {
             if (k == 3U || k == 6U || k == 8U) { /* each 25 ms of 100 Hz */
@@ -116,23 +98,21 @@ static void test_damp_leaves_less_gain_after_a_gap(void)
         }
         (void)filter_update(&damped, 0);
         (void)filter_update(&plain, 0);
-        if (probed(&plain).gain_uq16 > steady_uq16) { /* those with a covariance */
-            TEST_ASSERT_LESS_THAN_UINT16(probed(&plain).gain_uq16, probed(&damped).gain_uq16);
+        if (probe_of(&plain).gain_uq16 > steady_uq16) { /* those with a covariance */
+            TEST_ASSERT_LESS_THAN_UINT16(probe_of(&plain).gain_uq16, probe_of(&damped).gain_uq16);
         } else {
-            TEST_ASSERT_EQUAL_UINT16(probed(&plain).gain_uq16, probed(&damped).gain_uq16);
+            TEST_ASSERT_EQUAL_UINT16(probe_of(&plain).gain_uq16, probe_of(&damped).gain_uq16);
         }
     }
 }
 
 /* The start of the filters lies where their estimates will be: a sample missing in it changes none of them. */
-static void test_a_missing_sample_leaves_a_start_alone(void)
+TEST(test_a_missing_sample_leaves_a_start_alone)
 {
     FOR_EACH_KIND_WITH_MEDIAN(kind)
     {
-        filter_t plain;
-        filter_t told;
-        make(&plain, kind);
-        make(&told, kind);
+        filter_t plain = made_kind(kind, 1000);
+        filter_t told = made_kind(kind, 1000);
         for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
             int32_t before = told.x_lsb_q16;
             TEST_ASSERT_EQUAL_INT32(before, filter_missing(&told));
@@ -143,7 +123,7 @@ static void test_a_missing_sample_leaves_a_start_alone(void)
 }
 
 /* Whatever it went through: from the next sample on it is a filter that was begun just now. */
-static void test_restart_is_as_after_init(void)
+TEST(test_restart_is_as_after_init)
 {
     FOR_EACH_KIND(kind)
     {
@@ -161,7 +141,7 @@ static void test_restart_is_as_after_init(void)
                 int16_t z = any_sample();
                 TEST_ASSERT_EQUAL_INT32(filter_update(&fresh, z), filter_update(&used, z));
                 TEST_ASSERT_EQUAL_UINT8(fresh.flags, used.flags);
-                TEST_ASSERT_EQUAL_INT32(probed(&fresh).rate_lsb_q16, probed(&used).rate_lsb_q16);
+                TEST_ASSERT_EQUAL_INT32(probe_of(&fresh).rate_lsb_q16, probe_of(&used).rate_lsb_q16);
             }
         }
     }
@@ -171,19 +151,19 @@ static void test_restart_is_as_after_init(void)
 static uint16_t restarts_at_the_rail(filter_t *f, uint8_t kind, bool missing)
 {
     uint16_t restarts = 0;
-    make(f, kind);
+    *f = made_kind(kind, 1000);
     filter_reset(f, 0);
     for (uint16_t k = 0; k < CLIPPED; k++) {
         (void)(missing ? filter_missing(f) : filter_update(f, RAIL_LSB));
         restarts = (uint16_t)(restarts + ((f->flags & FILTER_REACQUIRED) != 0U));
-        filter_probe_t probe = probed(f);
+        filter_probe_t probe = probe_of(f);
         TEST_ASSERT_NULL(broken_bound(f, &probe, probe.x_lsb_q16));
     }
     return restarts;
 }
 
 /* Those that gate; the others take a sample at the rail as any other. */
-static void test_samples_reported_missing_restart_no_filter(void)
+TEST(test_samples_reported_missing_restart_no_filter)
 {
     FOR_EACH_KIND(kind)
     {
@@ -196,7 +176,7 @@ static void test_samples_reported_missing_restart_no_filter(void)
 }
 
 /* The samples at the rail do not count: it takes those of a run to restart. */
-static void test_a_filter_restarts_after_the_rail(void)
+TEST(test_a_filter_restarts_after_the_rail)
 {
     FOR_EACH_KIND(kind)
     {
@@ -217,8 +197,7 @@ static void test_a_filter_restarts_after_the_rail(void)
 /* Samples far away until a filter at rest restarts on one: refused ones, then missing ones, then more. */
 static unsigned samples_to_restart(uint8_t kind, unsigned refused, unsigned missing)
 {
-    filter_t f;
-    make(&f, kind);
+    filter_t f = made_kind(kind, 1000);
     filter_reset(&f, 0);
     for (unsigned k = 0; k < refused; k++) {
         (void)filter_update(&f, RAIL_LSB - 111);
@@ -237,7 +216,7 @@ static unsigned samples_to_restart(uint8_t kind, unsigned refused, unsigned miss
 /*
  * Missing ones in the run that restarts a filter, as those at the rail are, are worth nothing, however many they are.
  */
-static void test_missing_samples_do_not_count_in_a_run(void)
+TEST(test_missing_samples_do_not_count_in_a_run)
 {
     unsigned restarting = 0;
     FOR_EACH_KIND(kind)
@@ -253,12 +232,12 @@ static void test_missing_samples_do_not_count_in_a_run(void)
     TEST_ASSERT_TRUE(restarting > 0U);
 }
 /* However long samples were missing before: a filter that is reset begins its next gap anew. */
-static void test_a_reset_ends_the_hold(void)
+TEST(test_a_reset_ends_the_hold)
 {
     for (uint8_t kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++) {
         filter_t held, fresh;
-        make(&held, kind);
-        make(&fresh, kind);
+        held = made_kind(kind, 1000);
+        fresh = made_kind(kind, 1000);
         filter_reset(&held, 100);
         for (uint8_t k = 0; k < 30U; k++) {
             (void)filter_missing(&held);
@@ -267,21 +246,6 @@ static void test_a_reset_ends_the_hold(void)
         filter_reset(&fresh, 100);
         TEST_ASSERT_EQUAL_INT32(filter_missing(&fresh), filter_missing(&held));
         TEST_ASSERT_EQUAL_UINT8(fresh.quarters, held.quarters);
-        TEST_ASSERT_EQUAL_UINT32(probed(&fresh).p_lsb2_q8, probed(&held).p_lsb2_q8);
+        TEST_ASSERT_EQUAL_UINT32(probe_of(&fresh).p_lsb2_q8, probe_of(&held).p_lsb2_q8);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_damp_halves_the_rate_and_moves_nothing);
-    RUN_TEST(test_a_gap_stops_only_a_rate_that_may_be_noise);
-    RUN_TEST(test_damp_leaves_less_gain_after_a_gap);
-    RUN_TEST(test_a_missing_sample_leaves_a_start_alone);
-    RUN_TEST(test_restart_is_as_after_init);
-    RUN_TEST(test_samples_reported_missing_restart_no_filter);
-    RUN_TEST(test_a_filter_restarts_after_the_rail);
-    RUN_TEST(test_missing_samples_do_not_count_in_a_run);
-    RUN_TEST(test_a_reset_ends_the_hold);
-    return UNITY_END();
 }

@@ -2,8 +2,7 @@
  * Generic properties, over the list of filters: what every filter of lib/filters promises, whatever its rule. Runs on
  * the PC and on the chip. Facts about single laws live in support_law_NAME.c.
  */
-#include "support/filters.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #include <string.h>
 
@@ -16,17 +15,12 @@ void setUp(void)
     random_state = SEED;
 }
 
-void tearDown(void) {}
-
-static void make(filter_t *f, uint8_t kind, uint16_t rate_dhz)
+static filter_t made_random(uint8_t kind)
 {
-    TEST_ASSERT_TRUE(init_default(f, (filter_kind_t)kind, rate_dhz));
-}
-
-static void make_random(filter_t *f, uint8_t kind)
-{
+    filter_t f;
     uint32_t refused = 0;
-    TEST_ASSERT_TRUE(init_random(f, (filter_kind_t)kind, &random_state, &refused));
+    TEST_ASSERT_TRUE(init_random(&f, (filter_kind_t)kind, &random_state, &refused));
+    return f;
 }
 
 static int16_t any_sample(void)
@@ -36,8 +30,7 @@ static int16_t any_sample(void)
 
 static void assert_bounds(const filter_t *f, int32_t x_lsb_q16)
 {
-    filter_probe_t probe;
-    filter_probe(f, &probe);
+    filter_probe_t probe = probe_of(f);
     const char *broken = broken_bound(f, &probe, x_lsb_q16);
     if (broken != NULL) {
         TEST_FAIL_MESSAGE(broken);
@@ -55,7 +48,7 @@ static void assert_same_probe(const filter_t *a, const filter_t *b)
     TEST_ASSERT_EQUAL_MEMORY(&of_a, &of_b, sizeof of_a);
 }
 
-static void every_name_finds_its_kind_and_no_other_does(void)
+TEST(every_name_finds_its_kind_and_no_other_does)
 {
     FOR_EACH_KIND(kind)
     {
@@ -75,19 +68,18 @@ static void every_name_finds_its_kind_and_no_other_does(void)
 }
 
 /* Sensor rates, and both ends of the legal range of rates. */
-static void defaults_are_legal_at_every_rate(void)
+TEST(defaults_are_legal_at_every_rate)
 {
     static const uint16_t rates[] = { 50, 125, 250, 500, 1000, 2000, 4000, 8000, 40000 };
     FOR_EACH_KIND(kind)
     {
         for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
-            filter_t f;
-            make(&f, kind, rates[i]);
+            (void)made_kind(kind, rates[i]);
         }
     }
 }
 
-static void there_is_no_law_of_an_unknown_kind(void)
+TEST(there_is_no_law_of_an_unknown_kind)
 {
     TEST_ASSERT_NULL(filter_listed(FILTER_KIND_COUNT));
     TEST_ASSERT_NULL(filter_listed((filter_kind_t)(FILTER_KIND_COUNT + 1)));
@@ -121,7 +113,7 @@ static void try_value(uint8_t kind, uint8_t index, int32_t value)
 }
 
 /* Each descriptor's limits, one step inside and outside, zero, and the extremes of the field. */
-static void parameters_are_taken_within_their_range_only(void)
+TEST(parameters_are_taken_within_their_range_only)
 {
     FOR_EACH_KIND(kind)
     {
@@ -139,7 +131,7 @@ static void parameters_are_taken_within_their_range_only(void)
     }
 }
 
-static void rates_outside_5_to_4000_hz_are_refused(void)
+TEST(rates_outside_5_to_4000_hz_are_refused)
 {
     static const uint16_t rates[] = { 0, 49, 40001, 65535 };
     FOR_EACH_KIND(kind)
@@ -162,33 +154,30 @@ static void assert_constant_stays(filter_t *f, int16_t level, uint16_t samples)
 }
 
 /* An innovation of 0 moves nothing: exact, with any gain. */
-static void constant_in_constant_out_after_reset(void)
+TEST(constant_in_constant_out_after_reset)
 {
     static const int16_t levels[] = { -4096, -1, 0, 1, 255, 4095 };
     FOR_EACH_KIND(kind)
     {
         for (uint8_t i = 0; i < 6; i++) {
-            filter_t f;
-            make(&f, kind, 1000);
+            filter_t f = made_kind(kind, 1000);
             assert_constant_stays(&f, levels[i], 300);
         }
         for (uint16_t run = 0; run < ON_PC_OR_CHIP(2000, 20); run++) {
-            filter_t f;
-            make_random(&f, kind);
+            filter_t f = made_random(kind);
             assert_constant_stays(&f, (int16_t)(any_sample() / 8), 50);
         }
     }
 }
 
 /* Medians by hand: {9}, {9,-3}, {9,-3,500}, {9,-3,500,8}, {9,-3,500,8,7}; twice each to stay whole. */
-static void warm_up_puts_out_the_running_median(void)
+TEST(warm_up_puts_out_the_running_median)
 {
     static const int16_t in[] = { 9, -3, 500, 8, 7 };
     static const int16_t twice_median[] = { 18, 6, 18, 17, 16 };
     FOR_EACH_KIND_WITH_MEDIAN(kind)
     {
-        filter_t f;
-        make(&f, kind, 1000);
+        filter_t f = made_kind(kind, 1000);
         for (uint8_t k = 0; k < 5; k++) {
             TEST_ASSERT_EQUAL_INT32((int32_t)twice_median[k] * 32768, filter_update(&f, in[k]));
             TEST_ASSERT_EQUAL_UINT8(FILTER_WARMING_UP, f.flags);
@@ -199,12 +188,11 @@ static void warm_up_puts_out_the_running_median(void)
     }
 }
 
-static void a_missing_sample_in_warm_up_keeps_the_median(void)
+TEST(a_missing_sample_in_warm_up_keeps_the_median)
 {
     FOR_EACH_KIND_WITH_MEDIAN(kind)
     {
-        filter_t f;
-        make(&f, kind, 1000);
+        filter_t f = made_kind(kind, 1000);
         (void)filter_update(&f, 40);
         TEST_ASSERT_EQUAL_INT32((int32_t)40 * 65536, filter_missing(&f));
         TEST_ASSERT_EQUAL_UINT8(FILTER_WARMING_UP | FILTER_COASTED, f.flags);
@@ -218,15 +206,14 @@ static int32_t predicted(filter_t *f)
 }
 
 /* Steps, noise and missing samples; never -4096, whose mirror image the sensor does not have. */
-static void mirrored_input_gives_mirrored_output(void)
+TEST(mirrored_input_gives_mirrored_output)
 {
     FOR_EACH_KIND(kind)
     {
         int32_t tolerance = law_facts((filter_kind_t)kind).mirror_lsb_q16;
         TEST_ASSERT_TRUE(tolerance >= 0);
         for (uint16_t run = 0; run < ON_PC_OR_CHIP(200, 4); run++) {
-            filter_t up;
-            make_random(&up, kind);
+            filter_t up = made_random(kind);
             filter_t down = up;
             int16_t level = 0;
             for (uint16_t k = 0; k < 250; k++) {
@@ -265,20 +252,18 @@ static int32_t random_call(filter_t *f)
 }
 
 /* Whatever came before, a start half collected included: nothing is left but the level. */
-static void reset_forgets_all_but_the_level(void)
+TEST(reset_forgets_all_but_the_level)
 {
     FOR_EACH_KIND(kind)
     {
         for (uint16_t run = 0; run < ON_PC_OR_CHIP(300, 10); run++) {
-            filter_t f;
-            make_random(&f, kind);
+            filter_t f = made_random(kind);
             for (uint16_t k = run % 12U; k != 0U; k--) {
                 (void)filter_update(&f, any_sample());
             }
             int16_t level = (int16_t)(any_sample() / 8);
             filter_reset(&f, level);
-            filter_probe_t probe;
-            filter_probe(&f, &probe);
+            filter_probe_t probe = probe_of(&f);
             TEST_ASSERT_EQUAL_INT32((int32_t)level * 65536, probe.x_lsb_q16);
             TEST_ASSERT_EQUAL_INT32(0, probe.rate_lsb_q16);
             TEST_ASSERT_EQUAL_INT32(0, probe.innovation_lsb_q16);
@@ -288,14 +273,13 @@ static void reset_forgets_all_but_the_level(void)
 }
 
 /* The same calls for the original and its copy, by turns, so that nothing outside the state could tell them apart. */
-static void copy_goes_on_like_the_original(void)
+TEST(copy_goes_on_like_the_original)
 {
     FOR_EACH_KIND(kind)
     {
         for (uint16_t run = 0; run < ON_PC_OR_CHIP(100, 4); run++) {
-            filter_t f;
             filter_t copy;
-            make_random(&f, kind);
+            filter_t f = made_random(kind);
             for (uint8_t k = 0; k < 100; k++) {
                 if (k == 10U) {
                     memcpy(&copy, &f, sizeof f);
@@ -314,13 +298,12 @@ static void copy_goes_on_like_the_original(void)
 }
 
 /* A stream in one go, and in two blocks of which the second meets a copy of the state while the original is spoilt. */
-static void two_halves_are_the_whole(void)
+TEST(two_halves_are_the_whole)
 {
     FOR_EACH_KIND(kind)
     {
         for (uint16_t run = 0; run < ON_PC_OR_CHIP(300, 4); run++) {
-            filter_t whole;
-            make_random(&whole, kind);
+            filter_t whole = made_random(kind);
             filter_t first;
             filter_t second;
             memcpy(&first, &whole, sizeof whole);
@@ -345,11 +328,10 @@ static void two_halves_are_the_whole(void)
 }
 
 /* More of this, on the PC and on the chip alike: bitexact/filter_sequence.c. */
-static void any_calls_stay_within_bounds(void)
+TEST(any_calls_stay_within_bounds)
 {
     for (uint16_t run = 0; run < ON_PC_OR_CHIP(2000, 20); run++) {
-        filter_t f;
-        make_random(&f, any_kind(run));
+        filter_t f = made_random(any_kind(run));
         for (uint16_t k = 0; k < ON_PC_OR_CHIP(500, 100); k++) {
             assert_bounds(&f, random_call(&f));
         }
@@ -357,12 +339,11 @@ static void any_calls_stay_within_bounds(void)
 }
 
 /* The largest stretch of one call after the other: a filter on its way to the rail and left to predict. */
-static void predicting_for_ever_stays_within_bounds(void)
+TEST(predicting_for_ever_stays_within_bounds)
 {
     FOR_EACH_KIND(kind)
     {
-        filter_t f;
-        make(&f, kind, 125);
+        filter_t f = made_kind(kind, 125);
         for (int16_t k = 0; k < 40; k++) {
             (void)filter_update(&f, (int16_t)(k * 60));
         }
@@ -371,24 +352,4 @@ static void predicting_for_ever_stays_within_bounds(void)
             TEST_ASSERT_TRUE((f.flags & FILTER_COASTED) != 0U);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(every_name_finds_its_kind_and_no_other_does);
-    RUN_TEST(defaults_are_legal_at_every_rate);
-    RUN_TEST(there_is_no_law_of_an_unknown_kind);
-    RUN_TEST(parameters_are_taken_within_their_range_only);
-    RUN_TEST(rates_outside_5_to_4000_hz_are_refused);
-    RUN_TEST(constant_in_constant_out_after_reset);
-    RUN_TEST(warm_up_puts_out_the_running_median);
-    RUN_TEST(a_missing_sample_in_warm_up_keeps_the_median);
-    RUN_TEST(mirrored_input_gives_mirrored_output);
-    RUN_TEST(reset_forgets_all_but_the_level);
-    RUN_TEST(copy_goes_on_like_the_original);
-    RUN_TEST(two_halves_are_the_whole);
-    RUN_TEST(any_calls_stay_within_bounds);
-    RUN_TEST(predicting_for_ever_stays_within_bounds);
-    return UNITY_END();
 }

@@ -1,7 +1,7 @@
 /* Fixed-point primitives against exact integer arithmetic; on the chip these are the ones in assembler. */
 #include "fx.h"
 #include "support/filters.h"
-#include "unity.h"
+#include "support/test.h"
 
 #define SEED 2718UL
 
@@ -11,8 +11,6 @@ void setUp(void)
 {
     random_state = SEED;
 }
-
-void tearDown(void) {}
 
 /* Values where carries and roundings change, and random ones of all magnitudes between. */
 static uint32_t operand(uint16_t i)
@@ -29,7 +27,7 @@ static uint32_t half_up(uint64_t v, uint8_t shift)
     return (uint32_t)((v + ((uint64_t)1 << (shift - 1))) >> shift);
 }
 
-static void products_equal_exact_arithmetic(void)
+TEST(products_equal_exact_arithmetic)
 {
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(600, 60); i++) {
         for (uint16_t j = 0; j < ON_PC_OR_CHIP(600, 60); j++) {
@@ -49,7 +47,7 @@ static void products_equal_exact_arithmetic(void)
     }
 }
 
-static void shifts_equal_exact_arithmetic(void)
+TEST(shifts_equal_exact_arithmetic)
 {
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
         uint32_t v = operand(i);
@@ -60,7 +58,7 @@ static void shifts_equal_exact_arithmetic(void)
 }
 
 /* v - v / 2^k with what is taken rounded half up, and v with nothing taken. */
-static void without_a_part_equals_exact_arithmetic(void)
+TEST(without_a_part_equals_exact_arithmetic)
 {
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
         int64_t v = (int32_t)operand(i);
@@ -78,7 +76,7 @@ static void without_a_part_equals_exact_arithmetic(void)
 }
 
 /* The leading bit at the top, the places it moved by, and what is left of the number: all of it above the low byte. */
-static void leading_bits_by_definition(void)
+TEST(leading_bits_by_definition)
 {
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
         uint32_t v = operand(i) | 1U;
@@ -94,7 +92,7 @@ static void leading_bits_by_definition(void)
 }
 
 /* Rounded down, as no other product is. */
-static void upper_half_equals_exact_arithmetic(void)
+TEST(upper_half_equals_exact_arithmetic)
 {
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(20000, 1000); i++) {
         uint32_t a = operand(i);
@@ -105,7 +103,7 @@ static void upper_half_equals_exact_arithmetic(void)
 }
 
 /* 1 <= m < 2: chord 0.25 + nodes 0.5 + product 0.5 + 0.25 of the first node limited. |r - 2^47 / m| <= 1.5: exact. */
-static void reciprocal_of_leading_bits_is_within_its_bound(void)
+TEST(reciprocal_of_leading_bits_is_within_its_bound)
 {
     const uint32_t step = ON_PC_OR_CHIP(0x1001U, 0x200000U + 0x1001U);
     for (uint32_t m = 0x80000000U; m >= 0x80000000U; m += step) {
@@ -118,7 +116,7 @@ static void reciprocal_of_leading_bits_is_within_its_bound(void)
  * Steps through all of 1 <= s < 256: chord 0.25 + nodes 0.5 + product 0.5 (+ 0.25 of the first node's limit); each
  * halving halves the error and adds at most 0.5 by rounding. |r - 2^40 / s| <= 1.5 multiplied by 2 s: exact.
  */
-static void reciprocal_is_within_its_bound(void)
+TEST(reciprocal_is_within_its_bound)
 {
     const uint32_t step = ON_PC_OR_CHIP(0x1001U, 0x100000U + 0x1001U);
     for (uint32_t s = 0x1000000U; s >= 0x1000000U; s += step) {
@@ -130,7 +128,7 @@ static void reciprocal_is_within_its_bound(void)
     TEST_ASSERT_EQUAL_UINT16(512, fx_reciprocal_uq16(0x80000000U));
 }
 
-static void saturating_and_clamping(void)
+TEST(saturating_and_clamping)
 {
     TEST_ASSERT_EQUAL_HEX32(0x80000000U, filter_fx_abs32(INT32_MIN));
     TEST_ASSERT_EQUAL_UINT32(7, filter_fx_abs32(-7));
@@ -141,7 +139,7 @@ static void saturating_and_clamping(void)
     TEST_ASSERT_EQUAL_HEX32(UINT32_MAX - 1U, fx_add_sat(UINT32_MAX - 2U, 1U));
 }
 
-static void square_root_is_the_floor(void)
+TEST(square_root_is_the_floor)
 {
     for (uint32_t root = 0; root < 65536U; root += ON_PC_OR_CHIP(1U, 17U)) {
         uint32_t square = root * root;
@@ -163,7 +161,7 @@ static void assert_equal_to_bits(uint64_t a, int8_t shift, uint64_t b, uint8_t b
     TEST_ASSERT_TRUE(difference << bits <= b);
 }
 
-static void scaled_numbers_keep_fourteen_bits(void)
+TEST(scaled_numbers_keep_fourteen_bits)
 {
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(50000, 500); i++) {
         uint32_t a = (random32(&random_state) >> random32_below(&random_state, 31)) + 1U;
@@ -181,7 +179,7 @@ static void scaled_numbers_keep_fourteen_bits(void)
 }
 
 /* The multiples of 1/16: 2.5 = 0xA000 x 2^-14. */
-static void scaled_to_fixed_rounds_and_saturates(void)
+TEST(scaled_to_fixed_rounds_and_saturates)
 {
     fx_scaled_t two_and_a_half = { 0xA000U, -14 };
     TEST_ASSERT_EQUAL_UINT32(40, filter_fx_scaled_fixed(two_and_a_half, 4));
@@ -190,21 +188,4 @@ static void scaled_to_fixed_rounds_and_saturates(void)
     TEST_ASSERT_EQUAL_HEX32(UINT32_MAX, filter_fx_scaled_fixed(huge, 0));
     fx_scaled_t tiny = { 0xFFFFU, -60 };
     TEST_ASSERT_EQUAL_UINT32(0, filter_fx_scaled_fixed(tiny, 28));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(products_equal_exact_arithmetic);
-    RUN_TEST(shifts_equal_exact_arithmetic);
-    RUN_TEST(without_a_part_equals_exact_arithmetic);
-    RUN_TEST(leading_bits_by_definition);
-    RUN_TEST(upper_half_equals_exact_arithmetic);
-    RUN_TEST(reciprocal_of_leading_bits_is_within_its_bound);
-    RUN_TEST(reciprocal_is_within_its_bound);
-    RUN_TEST(saturating_and_clamping);
-    RUN_TEST(square_root_is_the_floor);
-    RUN_TEST(scaled_numbers_keep_fourteen_bits);
-    RUN_TEST(scaled_to_fixed_rounds_and_saturates);
-    return UNITY_END();
 }

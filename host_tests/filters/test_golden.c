@@ -4,7 +4,7 @@
  * is make bitexact's.
  */
 #include "support/filters.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,10 +14,6 @@
 #define HEAD_LINES 2
 
 static filter_t filters[FILTER_KIND_COUNT];
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* The next field of a line, and what comes behind it; an empty field is NULL. */
 static char *next_field(char **rest)
@@ -61,7 +57,7 @@ static void step_as_told(char *line, unsigned number)
     }
 }
 
-static void every_filter_gives_its_golden_vector(void)
+TEST(every_filter_gives_its_golden_vector)
 {
     FILE *file = fopen(GOLDEN, "r");
     TEST_ASSERT_NOT_NULL_MESSAGE(file, GOLDEN ": cannot be opened");
@@ -77,11 +73,4 @@ static void every_filter_gives_its_golden_vector(void)
     }
     fclose(file);
     TEST_ASSERT_EQUAL_UINT_MESSAGE(400 + HEAD_LINES, number, GOLDEN ": rows are missing");
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(every_filter_gives_its_golden_vector);
-    return UNITY_END();
 }

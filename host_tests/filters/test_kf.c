@@ -1,28 +1,20 @@
 /* kf in integers, on the PC and on the chip; against the double reference: test_kf_reference.c. */
-#include "support/laws.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test_law.h"
 
 /* q22 = q T^3 / R at 100 Hz, R 3, q 10000: 1e4 x 1e-6 / 3 = 3.3333e-3 = 223696.2 / 2^26; after R x 4 a quarter. */
-static void noise_scales_the_drive(void)
+TEST(noise_scales_the_drive)
 {
     filter_config_t config = { 1000, { [KF_R_LSB2_Q8] = 768, [KF_Q_LSB2_S3] = 10000 } };
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_kf, &config));
+    filter_t f = made(&filter_law_kf, &config);
     TEST_ASSERT_UINT32_WITHIN(223696UL / 4096U, 223696UL, f.own.kalman.q22_uq26);
     filter_set_noise(&f, 4 * 768);
     TEST_ASSERT_UINT32_WITHIN(223696UL / 4U / 4096U, 223696UL / 4U, f.own.kalman.q22_uq26);
 }
 
 /* Coasting is x += rate: three steps of a settled ramp of 2 LSB per sample. */
-static void coast_goes_on_at_the_rate(void)
+TEST(coast_goes_on_at_the_rate)
 {
-    filter_config_t config = filter_defaults(&filter_law_kf, 1000);
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_kf, &config));
+    filter_t f = made_default(&filter_law_kf, 1000);
     for (int16_t k = 0; k < 400; k++) {
         (void)filter_update(&f, (int16_t)(2 * k));
     }
@@ -33,35 +25,27 @@ static void coast_goes_on_at_the_rate(void)
 }
 
 /* After a reset the gain is that of a filter which has read the same value for long. */
-static void reset_is_as_if_read_for_ever(void)
+TEST(reset_is_as_if_read_for_ever)
 {
-    filter_t read;
-    filter_t reset;
-    filter_probe_t of_read;
-    filter_probe_t of_reset;
     filter_config_t config = filter_defaults(&filter_law_kf, 1000);
     config.value[KF_R_LSB2_Q8] = 16U * 256U;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&read, &filter_law_kf, &config));
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&reset, &filter_law_kf, &config));
-    for (uint16_t i = 0; i < 5000; i++) {
-        (void)filter_update(&read, 100);
-    }
+    filter_t read = made(&filter_law_kf, &config);
+    filter_t reset = made(&filter_law_kf, &config);
+    feed(&read, 100, 5000);
     filter_reset(&reset, 100);
     (void)filter_update(&read, 140);
     (void)filter_update(&reset, 140);
-    filter_probe(&read, &of_read);
-    filter_probe(&reset, &of_reset);
+    filter_probe_t of_read = probe_of(&read);
+    filter_probe_t of_reset = probe_of(&reset);
     TEST_ASSERT_UINT16_WITHIN(of_read.gain_uq16 / 50U, of_read.gain_uq16, of_reset.gain_uq16);
     TEST_ASSERT_INT32_WITHIN(65536 / 4, read.x_lsb_q16, reset.x_lsb_q16);
 }
 
 /* On its way to the rail and left to coast: it ends there, and says so. */
-static void coasting_ends_at_the_bound(void)
+TEST(coasting_ends_at_the_bound)
 {
     for (int8_t sign = -1; sign <= 1; sign = (int8_t)(sign + 2)) {
-        filter_config_t config = filter_defaults(&filter_law_kf, 125);
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_kf, &config));
+        filter_t f = made_default(&filter_law_kf, 125);
         for (int16_t k = 0; k < 40; k++) {
             (void)filter_update(&f, (int16_t)(sign * k * 60));
         }
@@ -74,11 +58,9 @@ static void coasting_ends_at_the_bound(void)
 }
 
 /* Any 32-bit words: the state stands within the bounds of kalman.h, and stays there. */
-static void begins_within_its_bounds(void)
+TEST(begins_within_its_bounds)
 {
-    filter_config_t config = filter_defaults(&filter_law_kf, 1000);
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_kf, &config));
+    filter_t f = made_default(&filter_law_kf, 1000);
     kalman_from(&f, 65536, -32768, (filter_covariance_t){ 0x08000000UL, 0x08000000UL, 0x04000000UL });
     TEST_ASSERT_EQUAL_INT32(65536, f.x_lsb_q16);
     TEST_ASSERT_EQUAL_INT32(-32768, f.rate_lsb);
@@ -96,23 +78,11 @@ static void begins_within_its_bounds(void)
         kalman_from(&f, x_lsb_q16, rate_lsb_q16, p);
         for (uint8_t step = 0; step < 4U; step++) {
             int32_t x = (step == 0U) ? f.x_lsb_q16 : filter_update(&f, (int16_t)random32(&random));
-            filter_probe_t probe;
-            filter_probe(&f, &probe);
+            filter_probe_t probe = probe_of(&f);
             TEST_ASSERT_NULL(broken_bound(&f, &probe, x));
             /* P12 <= P11, but g and w1 = 1 - g are wrong by up to 1.5 x 2^-16, w2 = P12 g by less than 32 times it */
             uint32_t rounding = (step == 0U) ? 0U : 32UL * 384U;
             TEST_ASSERT_LESS_OR_EQUAL_UINT32(f.own.kalman.p.p11 + rounding, f.own.kalman.p.p12 >> 2);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(noise_scales_the_drive);
-    RUN_TEST(coast_goes_on_at_the_rate);
-    RUN_TEST(reset_is_as_if_read_for_ever);
-    RUN_TEST(coasting_ends_at_the_bound);
-    RUN_TEST(begins_within_its_bounds);
-    return UNITY_END();
 }

@@ -1,59 +1,44 @@
 /* kf3 in integers, on the PC and on the chip; against the double reference: test_kf3_reference.c. */
-#include "support/laws.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #define SEED 8004UL
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
-static filter_t made(uint16_t rate_dhz, int32_t r_lsb2_q8, int32_t q_lsb2_s5)
+static filter_t made_kf3(uint16_t rate_dhz, int32_t r_lsb2_q8, int32_t q_lsb2_s5)
 {
     filter_config_t config = { rate_dhz, { [KF3_R_LSB2_Q8] = r_lsb2_q8, [KF3_Q_LSB2_S5] = q_lsb2_s5 } };
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_kf3, &config));
-    return f;
-}
-
-static filter_t made_default(uint16_t rate_dhz)
-{
-    filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_kf3, rate_dhz);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_kf3, &config));
-    return f;
+    return made(&filter_law_kf3, &config);
 }
 
 /*
  * q33 = q T^5 / R, in 2^-28: 1e7 x 3.2e-9 / 3 = 0.010667 at 50 Hz; 1e6 x 1e-10 / 3 x 256 = 0.0085333 at 100 Hz, where
  * the acceleration is counted in sixteenths. 16 roundings of 2^-14.
  */
-static void noise_scales_the_drive(void)
+TEST(noise_scales_the_drive)
 {
-    filter_t f = made(500, 768, 10000000);
+    filter_t f = made_kf3(500, 768, 10000000);
     TEST_ASSERT_UINT32_WITHIN(2863311UL / 1024U, 2863311UL, f.own.kf3.q33_uq28);
     filter_set_noise(&f, 4 * 768);
     TEST_ASSERT_UINT32_WITHIN(2863311UL / 4U / 1024U, 2863311UL / 4U, f.own.kf3.q33_uq28);
-    f = made(1000, 768, 1000000);
+    f = made_kf3(1000, 768, 1000000);
     TEST_ASSERT_UINT32_WITHIN(2290649UL / 1024U, 2290649UL, f.own.kf3.q33_uq28);
 }
 
-static void drive_keeps_to_its_range(void)
+TEST(drive_keeps_to_its_range)
 {
-    TEST_ASSERT_EQUAL_UINT32(0x10000000UL, made(50, 3, 1000000000).own.kf3.q33_uq28);
-    TEST_ASSERT_EQUAL_UINT32(0x10000000UL, made(999, 3, 1000000000).own.kf3.q33_uq28);
-    TEST_ASSERT_EQUAL_UINT32(0x2000000UL, made(1000, 3, 1000000000).own.kf3.q33_uq28);
-    TEST_ASSERT_EQUAL_UINT32(16UL, made(999, 256000, 1).own.kf3.q33_uq28);
-    TEST_ASSERT_EQUAL_UINT32(16UL, made(40000, 256000, 1).own.kf3.q33_uq28);
+    TEST_ASSERT_EQUAL_UINT32(0x10000000UL, made_kf3(50, 3, 1000000000).own.kf3.q33_uq28);
+    TEST_ASSERT_EQUAL_UINT32(0x10000000UL, made_kf3(999, 3, 1000000000).own.kf3.q33_uq28);
+    TEST_ASSERT_EQUAL_UINT32(0x2000000UL, made_kf3(1000, 3, 1000000000).own.kf3.q33_uq28);
+    TEST_ASSERT_EQUAL_UINT32(16UL, made_kf3(999, 256000, 1).own.kf3.q33_uq28);
+    TEST_ASSERT_EQUAL_UINT32(16UL, made_kf3(40000, 256000, 1).own.kf3.q33_uq28);
 }
 
 /*
  * The sixth sample at 50 Hz, R 1.5: q33 = 3e5 x 3.2e-9 / 1.5 = 0.00064; P33 = 1/32 + q33 = 0.03189, P23 the same, P22 =
  * P12 = 1/2 + P33 = 0.53189, P11 = 1.53189, w1 = P11 / (P11 + 1) = 0.60504, w2 = 0.21008, w3 = 0.012595.
  */
-static void start_is_that_of_the_recursion(void)
+TEST(start_is_that_of_the_recursion)
 {
-    filter_t f = made(500, 384, 300000);
+    filter_t f = made_kf3(500, 384, 300000);
     for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
         TEST_ASSERT_EQUAL_INT32(0, filter_update(&f, 0));
         TEST_ASSERT_EQUAL_UINT8(FILTER_WARMING_UP, f.flags);
@@ -77,14 +62,13 @@ static int16_t parabola(int16_t k, int16_t sign)
  * forgotten the start; at 100 Hz, q33 1e-5, the pole at 0.929 has left 1e-4 of what the start was off after 126
  * samples, at most 64 LSB.
  */
-static void follows_constant_acceleration_without_lag(void)
+TEST(follows_constant_acceleration_without_lag)
 {
     for (int16_t sign = -1; sign <= 1; sign = (int16_t)(sign + 2)) {
-        filter_t slow = made(500, 384, 30000000);
-        filter_t fine = made_default(1000);
+        filter_t slow = made_kf3(500, 384, 30000000);
+        filter_t fine = made_default(&filter_law_kf3, 1000);
         filter_config_t config = { 500, { [KF_R_LSB2_Q8] = 384, [KF_Q_LSB2_S3] = 10000 } };
-        filter_t two;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&two, &filter_law_kf, &config));
+        filter_t two = made(&filter_law_kf, &config);
         for (int16_t k = 0; k <= 126; k++) {
             (void)filter_update(&slow, parabola(k, sign));
             (void)filter_update(&fine, parabola(k, sign));
@@ -103,12 +87,10 @@ static void follows_constant_acceleration_without_lag(void)
 }
 
 /* scipy's steady gains at q33 = 1e-5: the answer to a step peaks at 1.26681 at its sample 12, within 2 % from 46 on. */
-static void step_is_answered_as_by_the_steady_gains(void)
+TEST(step_is_answered_as_by_the_steady_gains)
 {
-    filter_t f = made(1000, 768, 300000);
-    for (uint16_t k = 0; k < 400; k++) {
-        (void)filter_update(&f, 0);
-    }
+    filter_t f = made_kf3(1000, 768, 300000);
+    feed(&f, 0, 400);
     int32_t peak = 0;
     uint8_t at = 0;
     for (uint8_t k = 1; k <= 100; k++) {
@@ -130,11 +112,9 @@ static void step_is_answered_as_by_the_steady_gains(void)
  * later along the straight line, because the acceleration is not believed any more.
  */
 /* Rate and acceleration halved: P is that of (x, v / 2, a / 2). */
-static void damp_halves_what_moves_and_its_covariance(void)
+TEST(damp_halves_what_moves_and_its_covariance)
 {
-    filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_kf3, 1000);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_kf3, &config));
+    filter_t f = made_default(&filter_law_kf3, 1000);
     filter_reset(&f, 0);
     for (int16_t k = 0; k < 20; k++) {
         (void)filter_update(&f, (int16_t)(k * k));
@@ -151,9 +131,9 @@ static void damp_halves_what_moves_and_its_covariance(void)
     TEST_ASSERT_EQUAL_UINT32(f.own.kf3.p33_uq28 / 4U, damped.own.kf3.p33_uq28);
 }
 
-static void coast_goes_on_along_the_parabola_and_then_the_line(void)
+TEST(coast_goes_on_along_the_parabola_and_then_the_line)
 {
-    filter_t f = made(1000, 768, 300000);
+    filter_t f = made_kf3(1000, 768, 300000);
     for (int16_t k = 0; k <= 100; k++) {
         (void)filter_update(&f, parabola(k, 1));
     }
@@ -175,10 +155,10 @@ static void coast_goes_on_along_the_parabola_and_then_the_line(void)
  * 10,000 samples missing in motion: it stands at the bound, tells once, and is back 117 samples after its end (double
  * recursion of P, held at P11 = 4.17, from 4608 LSB off at rest to within 1/4 LSB), and for good.
  */
-static void comes_back_from_a_gap_of_ten_thousand(void)
+TEST(comes_back_from_a_gap_of_ten_thousand)
 {
     for (int32_t sign = -1; sign <= 1; sign += 2) {
-        filter_t f = made(1000, 768, 300000);
+        filter_t f = made_kf3(1000, 768, 300000);
         for (int16_t k = 0; k <= 100; k++) {
             (void)filter_update(&f, parabola(k, (int16_t)sign));
         }
@@ -200,13 +180,11 @@ static void comes_back_from_a_gap_of_ten_thousand(void)
 }
 
 /* After a reset the gain is that of a filter which has read the same value for long. */
-static void reset_is_as_if_read_for_ever(void)
+TEST(reset_is_as_if_read_for_ever)
 {
-    filter_t read = made(1000, 16 * 256, 300000);
+    filter_t read = made_kf3(1000, 16 * 256, 300000);
     filter_t reset = read;
-    for (uint16_t i = 0; i < 2000; i++) {
-        (void)filter_update(&read, 100);
-    }
+    feed(&read, 100, 2000);
     filter_reset(&reset, 100);
     TEST_ASSERT_EQUAL_INT32(100L * 65536, reset.x_lsb_q16);
     TEST_ASSERT_EQUAL_UINT8(0, reset.flags);
@@ -218,7 +196,7 @@ static void reset_is_as_if_read_for_ever(void)
 /* One corner of the legal parameters: any samples, gaps and R; every bound holds, and after them it settles. */
 static void assert_corner(uint16_t rate_dhz, int32_t r_lsb2_q8, int32_t q_lsb2_s5, uint32_t *random)
 {
-    filter_t f = made(rate_dhz, r_lsb2_q8, q_lsb2_s5);
+    filter_t f = made_kf3(rate_dhz, r_lsb2_q8, q_lsb2_s5);
     filter_probe_t probe;
     for (uint16_t k = 0; k < ON_PC_OR_CHIP(5000, 300); k++) {
         uint32_t what = random32_below(random, 64);
@@ -234,13 +212,11 @@ static void assert_corner(uint16_t rate_dhz, int32_t r_lsb2_q8, int32_t q_lsb2_s
         TEST_ASSERT_NULL(broken_bound(&f, &probe, x));
     }
     filter_set_noise(&f, (uint32_t)r_lsb2_q8);
-    for (uint16_t k = 0; k < 1500; k++) {
-        (void)filter_update(&f, 1000);
-    }
+    feed(&f, 1000, 1500);
     TEST_ASSERT_INT32_WITHIN(65536 / 16, 1000L * 65536, f.x_lsb_q16);
 }
 
-static void extreme_parameters_stay_within_bounds_and_settle(void)
+TEST(extreme_parameters_stay_within_bounds_and_settle)
 {
     static const uint16_t rates[] = { 50, 999, 1000, 40000 };
     uint32_t random = SEED;
@@ -251,10 +227,10 @@ static void extreme_parameters_stay_within_bounds_and_settle(void)
 }
 
 /* P at its widest in every element, as after no legal history: one update brings it where it can be predicted. */
-static void any_covariance_can_be_predicted_after_an_update(void)
+TEST(any_covariance_can_be_predicted_after_an_update)
 {
     const uint32_t one_uq28 = 0x10000000UL;
-    filter_t f = made(500, 384, 300000);
+    filter_t f = made_kf3(500, 384, 300000);
     uint32_t random = SEED + 1U;
     for (uint16_t k = 0; k < 500; k++) {
         filter_reset(&f, 0);
@@ -269,21 +245,4 @@ static void any_covariance_can_be_predicted_after_an_update(void)
                      f.own.kf3.p13_uq28 < one_uq28 && f.own.kf3.p23_uq28 < one_uq28 && f.own.kf3.p33_uq28 < one_uq28;
         TEST_ASSERT_TRUE(small);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(noise_scales_the_drive);
-    RUN_TEST(drive_keeps_to_its_range);
-    RUN_TEST(start_is_that_of_the_recursion);
-    RUN_TEST(follows_constant_acceleration_without_lag);
-    RUN_TEST(step_is_answered_as_by_the_steady_gains);
-    RUN_TEST(damp_halves_what_moves_and_its_covariance);
-    RUN_TEST(coast_goes_on_along_the_parabola_and_then_the_line);
-    RUN_TEST(comes_back_from_a_gap_of_ten_thousand);
-    RUN_TEST(reset_is_as_if_read_for_ever);
-    RUN_TEST(extreme_parameters_stay_within_bounds_and_settle);
-    RUN_TEST(any_covariance_can_be_predicted_after_an_update);
-    return UNITY_END();
 }

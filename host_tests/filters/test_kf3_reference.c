@@ -1,18 +1,13 @@
 /* kf3 against Eigen: the double reference against DARE, paper 001 and the notes; fixed point against the reference. */
 #include "reference/kf3.h"
 #include "support/law_kf3.h"
-#include "support/laws.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>
 
 #define SEED 8003
 #define COUNT_UQ28 (1.0 / 268435456.0)
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* scipy's solve_discrete_are for A = [1 1 1; 0 1 1; 0 0 1], Q = lambda (1, 1, 1)' (1, 1, 1), H = [1 0 0], R = 1. */
 static const struct {
@@ -27,7 +22,7 @@ static const struct {
     { 0x1p-32, { 0.04839659154, 0.00119289886, 1.488497343e-05 }, 0.040528704 },
 };
 
-static void reference_settles_where_dare_does(void)
+TEST(reference_settles_where_dare_does)
 {
     for (size_t i = 0; i < sizeof dare / sizeof dare[0]; i++) {
         reference_kf3_t f;
@@ -41,7 +36,7 @@ static void reference_settles_where_dare_does(void)
 }
 
 /* Notes 5.3, rho = 1: (1 - 1/z)^3 x = (b0 + b1/z + b2/z^2) u; b from the gains by eliminating v and a. */
-static void reference_is_the_structure_of_the_notes(void)
+TEST(reference_is_the_structure_of_the_notes)
 {
     reference_kf3_t f;
     reference_kf3_settled(&f, 5e-4);
@@ -81,7 +76,7 @@ static double settled_lag(const reference_kf3_t *settled, double doubled)
  * K1, K2 T, K3 T^2 (not the gamma / 2 of alpha-beta-gamma trackers); its sigma is 0.4500, not the 0.449 of their runs.
  * kf3's model at the same alpha: lambda 0.7265, by DARE and Lyapunov in scipy, sigma 0.4492.
  */
-static void paper_001_is_met_by_both_models(void)
+TEST(paper_001_is_met_by_both_models)
 {
     reference_kf3_t textbook;
     reference_kf3_textbook(&textbook, 0.1, 0.25, 2095.0);
@@ -100,11 +95,10 @@ static void paper_001_is_met_by_both_models(void)
 }
 
 /* The fixed-point filter makes 0.856 too: 100 Hz would need a drive beyond its range, 50 Hz does not. */
-static void fixed_point_reaches_the_gain_of_paper_001(void)
+TEST(fixed_point_reaches_the_gain_of_paper_001)
 {
     filter_config_t config = { 500, { [KF3_R_LSB2_Q8] = 256, [KF3_Q_LSB2_S5] = 227042921 } }; /* 0.726537 x 50^5 */
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_kf3, &config));
+    filter_t f = made(&filter_law_kf3, &config);
     filter_reset(&f, 0);
     TEST_ASSERT_DOUBLE_WITHIN(0.001, 0.856, f.gain_uq16 / 65536.0);
 }
@@ -129,9 +123,7 @@ static void covariance_of(const filter_t *f, double *p)
 static void start_both(filter_t *f, reference_kf3_t *r, const filter_config_t *config)
 {
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_kf3, config));
-    for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)filter_update(f, 0);
-    }
+    feed(f, 0, FILTER_WARM_UP_SAMPLES);
     reference_kf3_library(r, config->rate_dhz / 10.0, config->value[KF3_R_LSB2_Q8] / 256.0,
                           config->value[KF3_Q_LSB2_S5], 0.0);
 }
@@ -188,7 +180,7 @@ static const uint16_t rates[] = { 50, 125, 250, 500, 999, 1000, 2000, 4000, 8000
 enum { RATES = sizeof rates / sizeof rates[0] };
 
 /* All gains of 1,000 samples from the start on, at three drives of each rate. */
-static void gains_equal_the_reference(void)
+TEST(gains_equal_the_reference)
 {
     double worst = 0.0;
     for (int i = 0; i < RATES; i++) {
@@ -220,7 +212,7 @@ static void gains_equal_the_reference(void)
  * innovation's rounding) and by half a count of 2^-16 of each state, the rate by another half for the sixteenth of a
  * fine acceleration.
  */
-static void estimate_equals_the_reference(void)
+TEST(estimate_equals_the_reference)
 {
     test_random_t random;
     random_seed(&random, SEED);
@@ -257,7 +249,7 @@ static void estimate_equals_the_reference(void)
 }
 
 /* Gaps of all lengths, through the end of P's range and back; the second one from the third sample after the first. */
-static void gaps_equal_the_reference(void)
+TEST(gaps_equal_the_reference)
 {
     for (int i = 0; i < RATES; i++) {
         for (int gap = 1; gap < 3000; gap = gap * 3 / 2 + 1) {
@@ -286,7 +278,7 @@ static void gaps_equal_the_reference(void)
 }
 
 /* P stays a covariance, to the rounding of its elements, whatever is done to it. */
-static void covariance_stays_one_for_ever(void)
+TEST(covariance_stays_one_for_ever)
 {
     uint32_t random = SEED;
     double least = 0.0;
@@ -318,7 +310,7 @@ static void covariance_stays_one_for_ever(void)
 }
 
 /* As the filter: x at its own rounding, the variance P11 R. */
-static void probe_reports_the_variance(void)
+TEST(probe_reports_the_variance)
 {
     filter_config_t config = { 1000, { [KF3_R_LSB2_Q8] = 16 * 256, [KF3_Q_LSB2_S5] = 300000 } };
     filter_t f;
@@ -332,8 +324,7 @@ static void probe_reports_the_variance(void)
     reference_kf3_step(&r, 30);
     double bound[9];
     covariance_bound(&r, bound);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_DOUBLE_WITHIN(1.0 + 256.0 * 16.0 * bound[0], r.p[0] * 256.0, probe.p_lsb2_q8);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, probe.gate_lsb2_q8);
     TEST_ASSERT_DOUBLE_WITHIN(0.02, r.innovation, probe.innovation_lsb_q16 / 65536.0);
@@ -346,7 +337,7 @@ static void probe_reports_the_variance(void)
  * The sums of its rule in support/envelope.h, from the gains that its recursion settles at; per doubling of q33, and
  * its time constant.
  */
-static void kf3_sums_are_as_stated(void)
+TEST(kf3_sums_are_as_stated)
 {
     double worst = 0.0;
     for (int exponent = -32; exponent <= 0; exponent++) {
@@ -373,20 +364,4 @@ static void kf3_sums_are_as_stated(void)
     TEST_ASSERT_TRUE(worst <= stated && worst > stated - 0.002);
     /* 100 Hz, R = 3: q33 = 3e5 x 1e-10 / 3 = 1e-5 */
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2.0 / pow(1e-5, 1.0 / 6.0), kf3_time_constant_samples(1000, 3.0));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(reference_settles_where_dare_does);
-    RUN_TEST(reference_is_the_structure_of_the_notes);
-    RUN_TEST(paper_001_is_met_by_both_models);
-    RUN_TEST(fixed_point_reaches_the_gain_of_paper_001);
-    RUN_TEST(gains_equal_the_reference);
-    RUN_TEST(estimate_equals_the_reference);
-    RUN_TEST(gaps_equal_the_reference);
-    RUN_TEST(covariance_stays_one_for_ever);
-    RUN_TEST(probe_reports_the_variance);
-    RUN_TEST(kf3_sums_are_as_stated);
-    return UNITY_END();
 }

@@ -1,44 +1,18 @@
 /* kf against Eigen: the double reference against numbers of paper 002, the fixed-point filter against the reference. */
 #include "reference/filters.h"
-#include "support/filters.h"
 #include "support/own_model.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #define SEED 31
-#define GOLDEN "../shared/reference/golden_mls.csv"
-
-void setUp(void) {}
-
-void tearDown(void) {}
-
-/* Table 1 of paper 002: T 0.0247, R 0.0064, Q on the rate 0.0009, start (2.8, 0.008) with P diag(0.7, 0.04). */
-static reference_filter_t table_1(void)
-{
-    reference_filter_t f = { .period_s = 0.0247,
-                             .r = 0.0064,
-                             .r_gain = 0.0064,
-                             .q = { 0, 0, 0, 0.0009 },
-                             .x = { 2.8, 0.008 },
-                             .p = { 0.7, 0, 0, 0.04 } };
-    return f;
-}
-
-static void settle(reference_filter_t *f)
-{
-    for (int k = 0; k < 5000; k++) {
-        reference_step(f, 0.0);
-    }
-}
 
 /* robust-filters: steady posterior and gain of the Kalman filter; the linear robust filter's: test_lrf_reference.c. */
-static void reference_settles_where_the_paper_does(void)
+TEST(reference_settles_where_the_paper_does)
 {
-    reference_filter_t kf = table_1();
-    settle(&kf);
+    reference_filter_t kf = reference_table_1(1.0);
+    reference_settle(&kf);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6 * 8.1e-4, 8.14695564e-4, kf.p[0]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6 * 2.2e-3, 2.24204683e-3, kf.p[1]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6 * 1.3e-2, 1.32402513e-2, kf.p[3]);
@@ -48,39 +22,11 @@ static void reference_settles_where_the_paper_does(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 3.819e-2, 3.819e-2, reference_lyapunov(&kf, r_mixed));
 }
 
-static void reference_follows_the_golden_rows(void)
-{
-    FILE *file = fopen(GOLDEN, "r");
-    if (file == NULL) {
-        TEST_IGNORE_MESSAGE(GOLDEN " is not there");
-    }
-    char line[2000];
-    reference_filter_t f = table_1();
-    int rows = 0;
-    while (fgets(line, sizeof line, file) != NULL) {
-        double y;
-        double x1;
-        double x2;
-        double p11;
-        if (sscanf(line, "%*d,%lf,%*f,%*d,%lf,%lf,%lf", &y, &x1, &x2, &p11) == 4) {
-            reference_step(&f, y);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, x1, f.x[0]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, x2, f.x[1]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, p11, f.p[0]);
-            rows++;
-        }
-    }
-    fclose(file);
-    TEST_ASSERT_EQUAL_INT(200, rows);
-}
-
 /* A filter that has taken five zeros, and its reference from the same start. */
 static void start_both(filter_t *f, reference_filter_t *r, const filter_config_t *config)
 {
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_kf, config));
-    for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)filter_update(f, 0);
-    }
+    feed(f, 0, FILTER_WARM_UP_SAMPLES);
     reference_library(r, config->rate_dhz / 10.0, config->value[KF_R_LSB2_Q8] / 256.0, config->value[KF_Q_LSB2_S3], 0.0,
                       0, 0.0, 0.0);
 }
@@ -96,7 +42,7 @@ static double gain_bound(double w1, double q22_counts)
     return 1.5 / 65536.0 / w1 + w1 * 0.5 * (4.0 / 16384.0 + 1.0 / q22_counts);
 }
 
-static void gains_equal_the_reference(void)
+TEST(gains_equal_the_reference)
 {
     static const uint16_t rates[] = { 125, 250, 500, 1000, 2000, 4000, 8000 };
     for (int i = 0; i < 7; i++) {
@@ -126,7 +72,7 @@ static void gains_equal_the_reference(void)
  * rounding, through a filter whose error memory is 1 / w1 samples: |dx| <= (dw1 |r| + w1 / 256) / w1, |r| <= 5 sqrt(S
  * R).
  */
-static void estimate_equals_the_reference(void)
+TEST(estimate_equals_the_reference)
 {
     static const uint16_t rates[] = { 125, 1000, 4000, 8000 };
     test_random_t random;
@@ -149,7 +95,7 @@ static void estimate_equals_the_reference(void)
     }
 }
 
-static void probe_reports_the_variance(void)
+TEST(probe_reports_the_variance)
 {
     filter_config_t config = { 1000, { [KF_R_LSB2_Q8] = 16 * 256, [KF_Q_LSB2_S3] = 10000 } };
     filter_t f;
@@ -159,8 +105,7 @@ static void probe_reports_the_variance(void)
         (void)filter_update(&f, 10);
         reference_step(&r, 10);
     }
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_DOUBLE_WITHIN(1.0 + 256.0 * 16.0 * gain_bound(r.gain[0], f.own.kalman.q22_uq26), r.p[0] * 256.0,
                               probe.p_lsb2_q8);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, probe.gate_lsb2_q8);
@@ -171,7 +116,7 @@ static void probe_reports_the_variance(void)
  * At every rate of the sensor, and with so much noise that q T^3 / R is the least: as good as in double, and S is the
  * innovations' variance.
  */
-static void as_good_as_in_double_on_its_own_model(void)
+TEST(as_good_as_in_double_on_its_own_model)
 {
     static const struct {
         uint16_t rate_dhz;
@@ -187,16 +132,4 @@ static void as_good_as_in_double_on_its_own_model(void)
         TEST_ASSERT_DOUBLE_WITHIN(0.041, 1.0, found.nis); /* 5 sigma of 30,000 squares */
         TEST_ASSERT_TRUE(found.gated == 0.0);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(reference_settles_where_the_paper_does);
-    RUN_TEST(reference_follows_the_golden_rows);
-    RUN_TEST(gains_equal_the_reference);
-    RUN_TEST(estimate_equals_the_reference);
-    RUN_TEST(probe_reports_the_variance);
-    RUN_TEST(as_good_as_in_double_on_its_own_model);
-    return UNITY_END();
 }

@@ -1,47 +1,20 @@
 /* lrf against Eigen: the reference against paper 002's numbers, the fixed-point filter against the reference. */
 #include "reference/filters.h"
-#include "support/filters.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define SEED 32
-#define GOLDEN "../shared/reference/golden_mls.csv"
 #define FACTOR 60.85 /* q1 (1 - N^2) + N^2 at q1 = 0.85, N = 20 */
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
-/* Table 1 of paper 002. */
-static reference_filter_t table_1(double factor)
-{
-    reference_filter_t f = { .period_s = 0.0247,
-                             .r = 0.0064,
-                             .r_gain = factor * 0.0064,
-                             .q = { 0, 0, 0, 0.0009 },
-                             .x = { 2.8, 0.008 },
-                             .p = { 0.7, 0, 0, 0.04 } };
-    return f;
-}
-
-static void settle(reference_filter_t *f)
-{
-    for (int k = 0; k < 5000; k++) {
-        reference_step(f, 0.0);
-    }
-}
-
 /* 2.06 with outliers, 0.1715 without (by Lyapunov, notes section 3), to 1e-3 of what their four-digit parts give. */
-static void variance_ratios_are_those_of_the_notes(void)
+TEST(variance_ratios_are_those_of_the_notes)
 {
-    reference_filter_t plain = table_1(1.0);
-    reference_filter_t lrf = table_1(FACTOR);
-    settle(&plain);
-    settle(&lrf);
+    reference_filter_t plain = reference_table_1(1.0);
+    reference_filter_t lrf = reference_table_1(FACTOR);
+    reference_settle(&plain);
+    reference_settle(&lrf);
     const double outliers = reference_lyapunov(&plain, FACTOR * 0.0064) / reference_lyapunov(&lrf, FACTOR * 0.0064);
     TEST_ASSERT_DOUBLE_WITHIN(2e-3 * 0.0476, 0.0476, lrf.gain[0]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 1.852e-2, 1.852e-2, reference_lyapunov(&lrf, FACTOR * 0.0064));
@@ -53,39 +26,10 @@ static void variance_ratios_are_those_of_the_notes(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 0.1715, 0.1715, clean);
 }
 
-/* Columns k, y, true, outlier, four of KF, then four of LRF. */
-static void reference_follows_the_golden_rows(void)
-{
-    FILE *file = fopen(GOLDEN, "r");
-    if (file == NULL) {
-        TEST_IGNORE_MESSAGE(GOLDEN " is not there");
-    }
-    char line[2000];
-    reference_filter_t f = table_1(FACTOR);
-    int rows = 0;
-    while (fgets(line, sizeof line, file) != NULL) {
-        double y;
-        double x1;
-        double x2;
-        double p11;
-        if (sscanf(line, "%*d,%lf,%*f,%*d,%*f,%*f,%*f,%*f,%lf,%lf,%lf", &y, &x1, &x2, &p11) == 4) {
-            reference_step(&f, y);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, x1, f.x[0]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, x2, f.x[1]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, p11, f.p[0]);
-            rows++;
-        }
-    }
-    fclose(file);
-    TEST_ASSERT_EQUAL_INT(200, rows);
-}
-
 /* Steady gain w1 of a filter that reads zeros. */
 static double steady_gain(filter_t *f)
 {
-    for (int k = 0; k < 5000; k++) {
-        (void)filter_update(f, 0);
-    }
+    feed(f, 0, 5000);
     return f->gain_uq16 / 65536.0;
 }
 
@@ -93,15 +37,14 @@ static double steady_gain(filter_t *f)
  * Table 1 in the units of the library: q T^3 / R = Q T^2 / R = 8.5794e-5 at 100 Hz, R = 100 LSB^2 and q = 8579. The
  * steady gains within 0.5 % of the paper's, 0.12730 (N = 1) and 0.0476.
  */
-static void steady_gains_are_those_of_the_paper(void)
+TEST(steady_gains_are_those_of_the_paper)
 {
-    reference_filter_t reference = table_1(FACTOR);
-    settle(&reference);
+    reference_filter_t reference = reference_table_1(FACTOR);
+    reference_settle(&reference);
     filter_config_t config = filter_defaults(&filter_law_lrf, 1000);
     config.value[LRF_R_LSB2_Q8] = 100 * 256;
     config.value[LRF_Q_LSB2_S3] = 8579;
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
+    filter_t f = made(&filter_law_lrf, &config);
     TEST_ASSERT_DOUBLE_WITHIN(0.005 * reference.gain[0], reference.gain[0], steady_gain(&f));
     config.value[LRF_RATIO_UQ8] = 256;
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
@@ -109,18 +52,15 @@ static void steady_gains_are_those_of_the_paper(void)
 }
 
 /* The bound of test_kf_reference.c, with R_L for R: 2 (dw1 |r| + w1 / 256) / w1, |r| up to the outliers' 60 sigma. */
-static void estimate_equals_the_reference(void)
+TEST(estimate_equals_the_reference)
 {
     test_random_t random;
     random_seed(&random, SEED);
     printf("seed %d\n", SEED);
     filter_config_t config = filter_defaults(&filter_law_lrf, 1000);
-    filter_t f;
     reference_filter_t r;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
-    for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)filter_update(&f, 0);
-    }
+    filter_t f = made(&filter_law_lrf, &config);
+    feed(&f, 0, FILTER_WARM_UP_SAMPLES);
     double sigma = sqrt(config.value[LRF_R_LSB2_Q8] / 256.0);
     reference_library(&r, 100.0, FACTOR * sigma * sigma, config.value[LRF_Q_LSB2_S3], 0.0, 0, 0.0, 0.0);
     for (int k = 0; k < 5000; k++) {
@@ -138,25 +78,13 @@ static void estimate_equals_the_reference(void)
  * Where the header says that the core's smallest q T^3 / R_L binds: R is 0.03 LSB^2 per Hz, so 1e4 / f^3 / (60.85 x
  * 0.03 f) = 6e-8 at f = 550 Hz.
  */
-static void smallest_gain_binds_where_the_header_says(void)
+TEST(smallest_gain_binds_where_the_header_says)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_lrf, 5100); /* 5.4 counts of 2^-26 */
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
+    filter_t f = made(&filter_law_lrf, &config);
     TEST_ASSERT_TRUE(f.own.kalman.q22_uq26 > 4U);
     config = filter_defaults(&filter_law_lrf, 5600);
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
     TEST_ASSERT_EQUAL_UINT32(4, f.own.kalman.q22_uq26);
     TEST_ASSERT_DOUBLE_WITHIN(0.0005, 0.022, steady_gain(&f));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(variance_ratios_are_those_of_the_notes);
-    RUN_TEST(reference_follows_the_golden_rows);
-    RUN_TEST(steady_gains_are_those_of_the_paper);
-    RUN_TEST(estimate_equals_the_reference);
-    RUN_TEST(smallest_gain_binds_where_the_header_says);
-    return UNITY_END();
 }

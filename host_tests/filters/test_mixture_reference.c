@@ -1,19 +1,14 @@
 /* The pieces of mixture.h against libm: posterior, log odds, and the distance of wide.h. */
 #include "mixture.h"
-#include "support/laws.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 /* Every L of the format. p + (1 - p) = 1 exactly by construction; the tail ends at 12. */
-static void posterior_is_the_sigmoid(void)
+TEST(posterior_is_the_sigmoid)
 {
     double worst = 0.0;
     double worst_relative = 0.0;
@@ -36,7 +31,7 @@ static void posterior_is_the_sigmoid(void)
 }
 
 /* It falls without a step: the next L never has the larger rest. */
-static void posterior_is_monotone(void)
+TEST(posterior_is_monotone)
 {
     uint32_t before = filter_mixture_posterior(0).rest_uq24;
     for (int16_t l = 1; l < 7000; l++) {
@@ -47,7 +42,7 @@ static void posterior_is_monotone(void)
     }
 }
 
-static void log_odds_are_the_logarithm(void)
+TEST(log_odds_are_the_logarithm)
 {
     double worst = 0.0;
     for (uint32_t q = 1024; q <= 0x1000000U - 1024U; q += 509U) {
@@ -60,15 +55,14 @@ static void log_odds_are_the_logarithm(void)
 }
 
 /* r^2 / (R S) for innovations, R and P11 of all sizes. */
-static void distance_is_the_squared_innovation_in_variances(void)
+TEST(distance_is_the_squared_innovation_in_variances)
 {
     static const int32_t r_q8[] = { 3, 100, 256, 768, 4096, 40000, 256000 };
     double worst = 0.0;
     for (size_t i = 0; i < sizeof r_q8 / sizeof r_q8[0]; i++) {
         filter_config_t config = filter_defaults(&filter_law_pbf, 1000);
-        filter_t f;
         config.value[MIXTURE_R_LSB2_Q8] = r_q8[i];
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_pbf, &config));
+        filter_t f = made(&filter_law_pbf, &config);
         for (uint32_t p11 = 0; p11 < 0x7F000000U; p11 += p11 / 4U + 977U) {
             for (int16_t z = 1; z < 4095; z = (int16_t)(z + z / 7 + 1)) {
                 wide_from(&f, 0, 0, (filter_covariance_t){ p11, 0, 0 });
@@ -122,7 +116,7 @@ static void rate_answers(double w1, double *carried, double *driven)
 }
 
 /* At 400 times the R the drive per R is 1 / 400; both gains at their smallest are the worst. */
-static void the_rate_of_a_mixture_carries_it_as_far_as_stated(void)
+TEST(the_rate_of_a_mixture_carries_it_as_far_as_stated)
 {
     double worst = 0.0;
     for (double q22 = 1e-6; q22 < 1.0; q22 *= 2.0) {
@@ -137,15 +131,4 @@ static void the_rate_of_a_mixture_carries_it_as_far_as_stated(void)
     double stated = law_facts(FILTER_KIND_pbf).envelope.gain_sum - law_facts(plain_kind()).envelope.gain_sum;
     printf("rate of a mixture: %.3f, stated %.3f\n", worst, stated);
     TEST_ASSERT_TRUE(worst <= stated && worst > 0.95 * stated);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(posterior_is_the_sigmoid);
-    RUN_TEST(posterior_is_monotone);
-    RUN_TEST(log_odds_are_the_logarithm);
-    RUN_TEST(distance_is_the_squared_innovation_in_variances);
-    RUN_TEST(the_rate_of_a_mixture_carries_it_as_far_as_stated);
-    return UNITY_END();
 }

@@ -4,16 +4,12 @@
  */
 #include "noise.h"
 #include "support/filters.h"
-#include "unity.h"
+#include "support/test.h"
 
 #define SEED 99UL
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 /* 1.5 x 0.02 x 100 = 3 LSB^2, z 5.1; 800 Hz: 24, z 40.8. 223 for 131.07 x 1.7 = 222.8, 131 for 131.07: 0.1 %. */
-static void starts_at_the_floor_and_stays_there_on_silence(void)
+TEST(starts_at_the_floor_and_stays_there_on_silence)
 {
     static const uint16_t rates[] = { 1000, 8000 };
     static const uint16_t floors_lsb2_q8[] = { 768, 1306, 6144, 10445 };
@@ -27,7 +23,7 @@ static void starts_at_the_floor_and_stays_there_on_silence(void)
     }
 }
 
-static void gap_forgets_the_differences(void)
+TEST(gap_forgets_the_differences)
 {
     noise_t n;
     filter_noise_init(&n, 1000, false);
@@ -44,7 +40,7 @@ static void gap_forgets_the_differences(void)
     TEST_ASSERT_UINT32_WITHIN(2, 3 * 256, filter_noise_r_lsb2_q8(&n));
 }
 
-static void any_input_keeps_r_legal(void)
+TEST(any_input_keeps_r_legal)
 {
     uint32_t random = SEED;
     for (uint8_t run = 0; run < ON_PC_OR_CHIP(50, 10); run++) {
@@ -78,20 +74,10 @@ static uint32_t rise(uint8_t terms)
  * noise.h: a term counts at most three times the mean, 4.5 times among the first 64; the window is the same from 32 to
  * 63 terms and from 64 to 127, and twice as long.
  */
-static void the_first_64_terms_may_count_more(void)
+TEST(the_first_64_terms_may_count_more)
 {
     TEST_ASSERT_TRUE(rise(63) > 0);
     TEST_ASSERT_UINT32_WITHIN(1, rise(32), rise(63));
     TEST_ASSERT_UINT32_WITHIN(1, rise(64), rise(127));
     TEST_ASSERT_UINT32_WITHIN(rise(63) / 100U, rise(63), rise(64) * 35U / 10U); /* (4.5 - 1) / (3 - 1), twice */
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(starts_at_the_floor_and_stays_there_on_silence);
-    RUN_TEST(gap_forgets_the_differences);
-    RUN_TEST(any_input_keeps_r_legal);
-    RUN_TEST(the_first_64_terms_may_count_more);
-    return UNITY_END();
 }

@@ -8,18 +8,13 @@
 #include "support/filters.h"
 #include "support/roles.h"
 #include "support/roll.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #define SEED 99
 #define ROLL_RUNS 4000
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* E min(m, limit) for m the smaller of two squared standard normal numbers: integral of erfc(sqrt(t / 2))^2. */
 static double limited_mean(double limit)
@@ -44,7 +39,7 @@ static double unbias(double c)
     return 65536.0 / (6.0 * w);
 }
 
-static void constants_solve_their_equation(void)
+TEST(constants_solve_their_equation)
 {
     TEST_ASSERT_DOUBLE_WITHIN(2e-5, 1.0 - 2.0 / 3.14159265358979, limited_mean(40.0));
     TEST_ASSERT_DOUBLE_WITHIN(4.0, 40913.0, unbias(3.0));
@@ -71,7 +66,7 @@ static double estimate(uint16_t rate_dhz, double sigma, double outliers, int sam
  * standard deviation below 1.2 and a window of 256 averages 511; neighbouring terms are correlated (a sample serves in
  * six), which makes it at most sqrt(6) times 1.2 / sqrt(511) = 13 %.
  */
-static void level_is_one_and_a_half_variances(void)
+TEST(level_is_one_and_a_half_variances)
 {
     static const double sigmas[] = { 2, 4, 8, 16 };
     for (int i = 0; i < 40; i++) {
@@ -85,7 +80,7 @@ static void level_is_one_and_a_half_variances(void)
 /*
  * 0.5 Hz, +-30 degrees: the second difference over four samples is 128 (2 pi / 2)^2 (0.02)^2 = 0.5 LSB at most,
  * variance 0.25 / 2 / 6 = 0.02 LSB^2: nothing beside 4. */
-static void motion_does_not_count_as_noise(void)
+TEST(motion_does_not_count_as_noise)
 {
     double expected = 1.5 * (4.0 + 1.0 / 12.0);
     for (int i = 0; i < 10; i++) {
@@ -118,7 +113,7 @@ static double inflation(double c)
 }
 
 /* Hysteresis and spread as above; finite outliers (20 sigma) stay a little below the bound for huge ones. */
-static void outliers_do_not_run_away_with_it(void)
+TEST(outliers_do_not_run_away_with_it)
 {
     double x = inflation(3.0);
     TEST_ASSERT_TRUE(x > 3.0 && x < 4.0);
@@ -130,7 +125,7 @@ static void outliers_do_not_run_away_with_it(void)
 }
 
 /* From the floor (3 at 100 Hz) to 8 LSB rms (96) within 2 s; the same 32 times at 12.5 Hz in 2 s is 25 samples. */
-static void climbs_from_the_floor_in_two_seconds(void)
+TEST(climbs_from_the_floor_in_two_seconds)
 {
     for (int i = 0; i < 10; i++) {
         TEST_ASSERT_TRUE(estimate(1000, 8.0, 0.0, 200, 0.0, SEED + (uint64_t)i) > 0.5 * 1.5 * 64.0);
@@ -182,7 +177,7 @@ static double roll_estimate(const roll_case_t *c, uint32_t *random)
  * standard errors. The variance of an exponential mean of terms, each with a relative deviation of 1.2 and correlated
  * with its neighbours as in level_is_one_and_a_half_variances.
  */
-static void rolls_have_the_noise_that_the_terms_say(void)
+TEST(rolls_have_the_noise_that_the_terms_say)
 {
     static const roll_case_t cases[] = {
         { "rest, 10 Hz", STILL, 100, 0.0 },      { "cos60, 10 Hz", COS60, 100, 0.0 },
@@ -256,7 +251,7 @@ static bool check_rest(const rest_t *rest)
     return true;
 }
 
-static void shipped_rests_are_hardly_refused(void)
+TEST(shipped_rests_are_hardly_refused)
 {
     static const rest_t rests[] = {
         { "sim/streams/rest-0.7lsb.csv", 0, 1e9, 1000, 1 },
@@ -271,7 +266,7 @@ static void shipped_rests_are_hardly_refused(void)
 
 #define SHARED "../shared/streams/"
 
-static void recorded_rests_are_hardly_refused(void)
+TEST(recorded_rests_are_hardly_refused)
 {
     static const rest_t rests[] = {
         { SHARED "test-only/gy85-tilt-92hz.csv", 0, 23, 1000, 1 },
@@ -301,15 +296,6 @@ static void recorded_rests_are_hardly_refused(void)
 
 int main(void)
 {
-    UNITY_BEGIN();
     printf("seed %d\n", SEED);
-    RUN_TEST(constants_solve_their_equation);
-    RUN_TEST(level_is_one_and_a_half_variances);
-    RUN_TEST(motion_does_not_count_as_noise);
-    RUN_TEST(outliers_do_not_run_away_with_it);
-    RUN_TEST(climbs_from_the_floor_in_two_seconds);
-    RUN_TEST(rolls_have_the_noise_that_the_terms_say);
-    RUN_TEST(shipped_rests_are_hardly_refused);
-    RUN_TEST(recorded_rests_are_hardly_refused);
-    return UNITY_END();
+    return test_all();
 }

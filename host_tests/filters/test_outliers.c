@@ -1,6 +1,6 @@
 /* The outliers that make default puts into streams: as many, as large and in such runs as support/outliers.h says. */
 #include "support/outliers.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -74,7 +74,7 @@ static faulty_t made(outliers_t kind, uint8_t range_g)
  * = 1 - 1 / n - p / (1 - p) / n is what a reading says of the next: 0.0018 alone, 0.0051 in runs. Four of them, and
  * four of the mean length of 5,100 or 1,200 runs. One deviate in 200 is rounded to 0.
  */
-static void they_are_as_many_as_large_and_in_such_runs(void)
+TEST(they_are_as_many_as_large_and_in_such_runs)
 {
     static const struct {
         double share_off, run, run_off, sigma_off;
@@ -97,7 +97,7 @@ static void they_are_as_many_as_large_and_in_such_runs(void)
 }
 
 /* Of runs of mean length 5 four readings in five repeat where the first is held; of deviates of 80 LSB, one in 283. */
-static void only_what_is_held_repeats(void)
+TEST(only_what_is_held_repeats)
 {
     faulty_t apart = made(OUTLIERS_IN_RUNS, 16);
     faulty_t held = made(OUTLIERS_HELD, 16);
@@ -109,7 +109,7 @@ static void only_what_is_held_repeats(void)
 }
 
 /* 250 LSB lie 2.5 standard deviations of z below the rail of 2 g: one outlier in 160 ends there. */
-static void the_rails_of_the_range_hold(void)
+TEST(the_rails_of_the_range_hold)
 {
     faulty_t faulty = made(OUTLIERS_ALONE, 2);
     size_t at_rail = 0;
@@ -122,7 +122,7 @@ static void the_rails_of_the_range_hold(void)
     faulty_free(&faulty);
 }
 
-static void axes_have_their_own_and_a_seed_gives_the_same(void)
+TEST(axes_have_their_own_and_a_seed_gives_the_same)
 {
     faulty_t one = made(OUTLIERS_ALONE, 16);
     faulty_t same = made(OUTLIERS_ALONE, 16);
@@ -137,14 +137,4 @@ static void axes_have_their_own_and_a_seed_gives_the_same(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.386, (double)any / ROWS);
     faulty_free(&one);
     faulty_free(&same);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(they_are_as_many_as_large_and_in_such_runs);
-    RUN_TEST(only_what_is_held_repeats);
-    RUN_TEST(the_rails_of_the_range_hold);
-    RUN_TEST(axes_have_their_own_and_a_seed_gives_the_same);
-    return UNITY_END();
 }

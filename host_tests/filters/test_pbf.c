@@ -1,26 +1,18 @@
 /* pbf in integers, on PC and chip: what an outlier moves, recovery. Against double: test_wide_reference.c. */
-#include "support/laws.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test_law.h"
 
 /* 100 Hz, R 16 LSB^2: sigma 4 LSB; settled at level. */
 static filter_t settled(int16_t level)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_pbf, 1000);
     config.value[MIXTURE_R_LSB2_Q8] = 16U * 256U;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_pbf, &config));
-    for (uint16_t k = 0; k < 300; k++) {
-        (void)filter_update(&f, level);
-    }
+    filter_t f = made(&filter_law_pbf, &config);
+    feed(&f, level, 300);
     return f;
 }
 
 /* Table 1: 0.85 and 20. */
-static void defaults_are_the_papers(void)
+TEST(defaults_are_the_papers)
 {
     filter_config_t config = filter_defaults(&filter_law_pbf, 1000);
     TEST_ASSERT_EQUAL_INT32(55706, config.value[MIXTURE_CLEAN_UQ16]);
@@ -31,7 +23,7 @@ static void defaults_are_the_papers(void)
  * Beyond doubt an outlier counts with Kalman's gain P11 / S times S / S_N, that is P11 / (P11 + 400): r = 4000 LSB
  * against sigma 4.
  */
-static void outlier_moves_the_estimate_by_its_small_gain(void)
+TEST(outlier_moves_the_estimate_by_its_small_gain)
 {
     filter_t f = settled(0);
     filter_t predicted = f;
@@ -45,7 +37,7 @@ static void outlier_moves_the_estimate_by_its_small_gain(void)
 }
 
 /* The posterior decides: at 1 sigma p = 0.98, at 10 p = 0; 1/2 where b t / 2 = ln(0.85 / 0.15) + ln(S_N / S) / 2. */
-static void flag_means_more_likely_an_outlier_than_not(void)
+TEST(flag_means_more_likely_an_outlier_than_not)
 {
     filter_t f = settled(0);
     filter_t near = f;
@@ -58,7 +50,7 @@ static void flag_means_more_likely_an_outlier_than_not(void)
 }
 
 /* P grows where the sample is neither clearly normal nor clearly an outlier: that opens the filter to a step. */
-static void doubt_makes_p_grow(void)
+TEST(doubt_makes_p_grow)
 {
     filter_t f = settled(0);
     filter_t predicted = f;
@@ -67,7 +59,7 @@ static void doubt_makes_p_grow(void)
     TEST_ASSERT_TRUE(f.own.mixture.core.p.p11 > predicted.own.mixture.core.p.p11);
 }
 
-static void step_of_100_sigma_is_followed_within_800_samples(void)
+TEST(step_of_100_sigma_is_followed_within_800_samples)
 {
     filter_t f = settled(0);
     uint16_t k = 0;
@@ -82,7 +74,7 @@ static void step_of_100_sigma_is_followed_within_800_samples(void)
     TEST_ASSERT_INT32_WITHIN(65536, (int32_t)400 * 65536, f.x_lsb_q16);
 }
 
-static void every_second_sample_an_outlier_does_not_lead_it_away(void)
+TEST(every_second_sample_an_outlier_does_not_lead_it_away)
 {
     filter_t f = settled(0);
     for (uint16_t k = 0; k < 400; k++) {
@@ -92,7 +84,7 @@ static void every_second_sample_an_outlier_does_not_lead_it_away(void)
 }
 
 /* stay against clean 0.85: from 0.15 on; against N = 2: below 2/3; up to 500 Hz: else they do not go together. */
-static void stay_goes_with_the_share_and_the_ratio(void)
+TEST(stay_goes_with_the_share_and_the_ratio)
 {
     static const struct {
         int32_t stay, ratio_q8;
@@ -120,12 +112,11 @@ static void stay_goes_with_the_share_and_the_ratio(void)
  * After an outlier q is 1 - stay = 0.2; a missing sample leaves turn = (0.85 + 0.8 - 1) / 0.85 = 0.765 of its distance
  * to the share of normal samples, 0.85.
  */
-static void a_chain_fades_over_missing_samples(void)
+TEST(a_chain_fades_over_missing_samples)
 {
     filter_config_t config = filter_defaults(&filter_law_pbf, 1000);
     config.value[MIXTURE_STAY_UQ16] = 52429;
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_pbf, &config));
+    filter_t f = made(&filter_law_pbf, &config);
     filter_reset(&f, 0);
     (void)filter_update(&f, 4000);
     TEST_ASSERT_UINT32_WITHIN(3000, 3355443UL, f.own.mixture.normal_uq24); /* 0.2 */
@@ -136,18 +127,4 @@ static void a_chain_fades_over_missing_samples(void)
     }
     filter_reset(&f, 0);
     TEST_ASSERT_EQUAL_UINT32(55706UL << 8, f.own.mixture.normal_uq24);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(defaults_are_the_papers);
-    RUN_TEST(outlier_moves_the_estimate_by_its_small_gain);
-    RUN_TEST(flag_means_more_likely_an_outlier_than_not);
-    RUN_TEST(doubt_makes_p_grow);
-    RUN_TEST(step_of_100_sigma_is_followed_within_800_samples);
-    RUN_TEST(every_second_sample_an_outlier_does_not_lead_it_away);
-    RUN_TEST(stay_goes_with_the_share_and_the_ratio);
-    RUN_TEST(a_chain_fades_over_missing_samples);
-    return UNITY_END();
 }

@@ -12,11 +12,10 @@
 #include "support/roles.h"
 #include "support/shipped.h"
 #include "support/survey.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { SEEDS = 20 };
@@ -32,10 +31,6 @@ enum { SEEDS = 20 };
 #define ALLOWED_SHARE_MAX 0.25
 
 static char text[160];
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static bool is_robust(size_t contender)
 {
@@ -108,7 +103,7 @@ static void check_calm(const char *name, const stream_t *stream, uint16_t rate_d
     study_end(&study);
 }
 
-static void theory_holds_on_calm_shipped_streams(void)
+TEST(theory_holds_on_calm_shipped_streams)
 {
     for (size_t i = 0; i < SHIPPED_STREAMS; i++) {
         if (!shipped_streams[i].calm) {
@@ -124,7 +119,7 @@ static void theory_holds_on_calm_shipped_streams(void)
 }
 
 /* Bad reads among a few hundred samples say little: all stretches together. */
-static void theory_holds_on_recorded_rests(void)
+TEST(theory_holds_on_recorded_rests)
 {
     static recordings_t recordings;
     score_t pool[CONTENDERS] = { 0 };
@@ -168,7 +163,7 @@ static void check_survival(const char *name, const stream_t *clean, uint16_t rat
     }
 }
 
-static void no_filter_diverges_under_faults(void)
+TEST(no_filter_diverges_under_faults)
 {
     for (size_t i = 0; i < SHIPPED_STREAMS; i++) {
         stream_t stream;
@@ -178,7 +173,7 @@ static void no_filter_diverges_under_faults(void)
     }
 }
 
-static void no_filter_diverges_under_faults_in_recordings(void)
+TEST(no_filter_diverges_under_faults_in_recordings)
 {
     static const char *const names[] = { "sis-lie-slow", "sis-roll90", "freeimu-orient-a", "gy85-tilt-92hz" };
     static recordings_t recordings;
@@ -226,7 +221,7 @@ static double faulty_share(fault_t fault, double *clipped)
 }
 
 /* 120,000 rows: four standard deviations of a binomial share; runs of 2.45 and bursts of 27 rows spread it the more. */
-static void faults_are_as_often_as_measured(void)
+TEST(faults_are_as_often_as_measured)
 {
     static const struct {
         fault_t fault;
@@ -244,7 +239,7 @@ static void faults_are_as_often_as_measured(void)
     }
 }
 
-static void contention_comes_in_runs_of_up_to_nine(void)
+TEST(contention_comes_in_runs_of_up_to_nine)
 {
     size_t runs[11] = { 0 };
     for (unsigned seed = 1; seed <= SEEDS; seed++) {
@@ -305,7 +300,7 @@ static int form_of(const int16_t *bad, const int16_t *good)
 }
 
 /* 118 bad reads, a fifth of each form: 24, standard deviation 4.4. */
-static void bad_reads_have_all_forms(void)
+TEST(bad_reads_have_all_forms)
 {
     size_t count[FORMS + 1] = { 0 };
     size_t faults = 0;
@@ -332,7 +327,7 @@ static void bad_reads_have_all_forms(void)
 }
 
 /* A fault-free copy leaves nothing, to the last bit: the differences are the faults' alone. */
-static void without_a_fault_nothing_differs(void)
+TEST(without_a_fault_nothing_differs)
 {
     study_t study;
     faulty_t faulty;
@@ -358,15 +353,6 @@ static void without_a_fault_nothing_differs(void)
 
 int main(void)
 {
-    UNITY_BEGIN();
     printf("seeds %u to %u\n", FIRST_SEED, FIRST_SEED + SEEDS - 1U);
-    RUN_TEST(faults_are_as_often_as_measured);
-    RUN_TEST(contention_comes_in_runs_of_up_to_nine);
-    RUN_TEST(bad_reads_have_all_forms);
-    RUN_TEST(without_a_fault_nothing_differs);
-    RUN_TEST(theory_holds_on_calm_shipped_streams);
-    RUN_TEST(theory_holds_on_recorded_rests);
-    RUN_TEST(no_filter_diverges_under_faults);
-    RUN_TEST(no_filter_diverges_under_faults_in_recordings);
-    return UNITY_END();
+    return test_all();
 }

@@ -2,7 +2,7 @@
 #include "support/random.h"
 #include "support/roles.h"
 #include "support/survey.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,10 +10,6 @@
 #include <string.h>
 
 #define SEED 20
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* Sum of the magnitudes of the answer to one sample of 1; *square of their squares. */
 static double answer_sum(double w1, double w2, double *square)
@@ -33,7 +29,7 @@ static double answer_sum(double w1, double w2, double *square)
     return sum;
 }
 
-static void gain_sums_are_as_stated(void)
+TEST(gain_sums_are_as_stated)
 {
     double worst = 0.0;
     for (int i = 1; i <= 200; i++) {
@@ -47,14 +43,14 @@ static void gain_sums_are_as_stated(void)
 }
 
 /* The paper's system: T = 0.0247 s and Q = 0.0009 against R = 0.0064 make q22 = Q T^2 / R = 8.58e-5. */
-static void a_time_constant_of_the_paper_has_14_7_samples(void)
+TEST(a_time_constant_of_the_paper_has_14_7_samples)
 {
     double r_lsb2 = filter_parameter_q.standard * 1e-6 / 8.58e-5; /* the same q22 at 100 Hz */
     TEST_ASSERT_DOUBLE_WITHIN(0.05, 14.7, time_constant_samples(1000, r_lsb2));
     TEST_ASSERT_EQUAL_size_t(200, band_window(robust_kind(), 1000, r_lsb2));
 }
 
-static void even_medians_are_refused(void)
+TEST(even_medians_are_refused)
 {
     median_t m;
     for (unsigned window = 0; window <= 12; window++) {
@@ -71,7 +67,7 @@ static int compare(const void *a, const void *b)
 }
 
 /* Sliding medians and extremes against sorting. */
-static void medians_are_those_of_sorting(void)
+TEST(medians_are_those_of_sorting)
 {
     enum { COUNT = 3000 };
     static int16_t z[COUNT];
@@ -105,7 +101,7 @@ static void medians_are_those_of_sorting(void)
 }
 
 /* R = 4 LSB^2 at 100 Hz: within reach 9 x 2 + 4 x 8 = 50 LSB; steps agree up to 3 sqrt(8) + 8 - 1 = 15.5. */
-static void the_hull_tells_near_from_far(void)
+TEST(the_hull_tells_near_from_far)
 {
     hull_t hull = { .filled = 0 };
     double left;
@@ -124,7 +120,7 @@ static void the_hull_tells_near_from_far(void)
     TEST_ASSERT_FALSE(hull_judge(&hull, 1000, 180.0, &left));
 }
 
-static void rows_are_counted(void)
+TEST(rows_are_counted)
 {
     static stream_row_t rows[] = {
         { .lsb = { 0, 0, 0 } },      { .lsb = { -1, -1, -1 } },   { .lsb = { -1, -1, -1 } },   { .lsb = { 1, 2, 511 } },
@@ -142,13 +138,6 @@ static void rows_are_counted(void)
 
 int main(void)
 {
-    UNITY_BEGIN();
     printf("seed %d\n", SEED);
-    RUN_TEST(gain_sums_are_as_stated);
-    RUN_TEST(a_time_constant_of_the_paper_has_14_7_samples);
-    RUN_TEST(even_medians_are_refused);
-    RUN_TEST(medians_are_those_of_sorting);
-    RUN_TEST(the_hull_tells_near_from_far);
-    RUN_TEST(rows_are_counted);
-    return UNITY_END();
+    return test_all();
 }

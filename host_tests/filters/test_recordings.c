@@ -8,7 +8,7 @@
 #include "support/recordings.h"
 #include "support/shipped.h"
 #include "support/survey.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <stdio.h>
 
@@ -18,10 +18,6 @@
 
 static recordings_t recordings;
 static char text[200];
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static const char *about(const char *name, int kind, int axis, const char *what)
 {
@@ -82,7 +78,7 @@ static void compare_with_pipeline(const stream_t *stream, uint8_t kind, uint16_t
     }
 }
 
-static void the_chain_is_the_pipeline(void)
+TEST(the_chain_is_the_pipeline)
 {
     static const char *const names[] = { "gaps-jitter", "clipping", "bad-reads", "outliers-15pct" };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -117,7 +113,7 @@ static size_t check_stream(const char *name, const stream_t *stream, uint16_t ra
     return judged;
 }
 
-static void no_filter_diverges_on_the_shipped_streams(void)
+TEST(no_filter_diverges_on_the_shipped_streams)
 {
     for (size_t i = 0; i < SHIPPED_STREAMS; i++) {
         const shipped_t *shipped = &shipped_streams[i];
@@ -139,7 +135,7 @@ static void load_recordings(void)
 }
 
 /* Shares in the index have four places. */
-static void recordings_are_as_their_index_says(void)
+TEST(recordings_are_as_their_index_says)
 {
     load_recordings();
     for (size_t i = 0; i < recordings.count; i++) {
@@ -159,7 +155,7 @@ static void recordings_are_as_their_index_says(void)
     }
 }
 
-static void no_filter_diverges_on_the_recordings(void)
+TEST(no_filter_diverges_on_the_recordings)
 {
     load_recordings();
     for (size_t i = 0; i < recordings.count; i++) {
@@ -191,7 +187,7 @@ static void check_rest(const char *name, const stream_t *rest, uint16_t rate_dhz
     }
 }
 
-static void shipped_rests_are_hardly_gated(void)
+TEST(shipped_rests_are_hardly_gated)
 {
     for (size_t i = 0; i < 4; i++) {
         stream_t stream;
@@ -201,7 +197,7 @@ static void shipped_rests_are_hardly_gated(void)
     }
 }
 
-static void recorded_rests_are_hardly_gated(void)
+TEST(recorded_rests_are_hardly_gated)
 {
     load_recordings();
     for (size_t i = 0; i < RESTS; i++) {
@@ -221,13 +217,6 @@ static void recorded_rests_are_hardly_gated(void)
 
 int main(void)
 {
-    UNITY_BEGIN();
     printf("recordings in %s\n", recordings_folder());
-    RUN_TEST(the_chain_is_the_pipeline);
-    RUN_TEST(no_filter_diverges_on_the_shipped_streams);
-    RUN_TEST(shipped_rests_are_hardly_gated);
-    RUN_TEST(recordings_are_as_their_index_says);
-    RUN_TEST(no_filter_diverges_on_the_recordings);
-    RUN_TEST(recorded_rests_are_hardly_gated);
-    return UNITY_END();
+    return test_all();
 }

@@ -1,6 +1,6 @@
 /* What make default compares with: smoothing without lag, and a recording at a lower rate. */
 #include "support/smooth.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,10 +11,6 @@
 
 static const double turn = 6.28318530717958648;
 static double value[COUNT];
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* Largest distance from gain times the sine, two seconds from the ends. */
 static double off_from_sine(double hz, double gain)
@@ -31,7 +27,7 @@ static double off_from_sine(double hz, double gain)
 }
 
 /* Twice through a Butterworth of the second order: 1 / (1 + (tan(pi f / rate) / tan(pi cut / rate))^4), and no lag. */
-static void sines_keep_their_phase_and_the_cut_its_place(void)
+TEST(sines_keep_their_phase_and_the_cut_its_place)
 {
     static const double hz[] = { 0.5, 2.5, 5.0, 7.0, 10.0, 30.0 };
     for (size_t i = 0; i < sizeof hz / sizeof hz[0]; i++) {
@@ -41,7 +37,7 @@ static void sines_keep_their_phase_and_the_cut_its_place(void)
 }
 
 /* Their point reflection goes on straight, so no end bends; what starts the filter dies by exp(-22) in a second. */
-static void lines_stay_up_to_their_ends(void)
+TEST(lines_stay_up_to_their_ends)
 {
     for (size_t i = 0; i < COUNT; i++) {
         value[i] = 250.0 - 0.3 * (double)i;
@@ -52,7 +48,7 @@ static void lines_stay_up_to_their_ends(void)
     }
 }
 
-static void one_value_is_refused(void)
+TEST(one_value_is_refused)
 {
     TEST_ASSERT_FALSE(smooth_both_ways(value, 1, RATE_HZ, CUT_HZ));
     value[0] = value[1] = 7.0;
@@ -76,7 +72,7 @@ static stream_t twelve_rows(size_t gap_before)
     return stream;
 }
 
-static void groups_are_rounded_means_at_the_time_of_their_last_row(void)
+TEST(groups_are_rounded_means_at_the_time_of_their_last_row)
 {
     static const int16_t x[] = { 2, 17, 50, 101 }; /* (0 + 1 + 4) / 3, (9 + 16 + 25) / 3, ... */
     static const int16_t z[] = { -1, -4, -7, -10 };
@@ -99,7 +95,7 @@ static void groups_are_rounded_means_at_the_time_of_their_last_row(void)
     divided_free(&divided);
 }
 
-static void no_group_bridges_a_gap_and_single_rows_all_stay(void)
+TEST(no_group_bridges_a_gap_and_single_rows_all_stay)
 {
     stream_t whole = twelve_rows(4);
     divided_t divided;
@@ -112,15 +108,4 @@ static void no_group_bridges_a_gap_and_single_rows_all_stay(void)
     TEST_ASSERT_EQUAL_MEMORY(rows, divided.stream.rows, sizeof rows);
     divided_free(&divided);
     TEST_ASSERT_FALSE(stream_divide(&divided, &whole, 8));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(sines_keep_their_phase_and_the_cut_its_place);
-    RUN_TEST(lines_stay_up_to_their_ends);
-    RUN_TEST(one_value_is_refused);
-    RUN_TEST(groups_are_rounded_means_at_the_time_of_their_last_row);
-    RUN_TEST(no_group_bridges_a_gap_and_single_rows_all_stay);
-    return UNITY_END();
 }

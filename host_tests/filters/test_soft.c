@@ -2,15 +2,10 @@
  * soft in integers, on the PC and on the chip: within the soft gate, beyond it, beyond the gate. Against the double
  * reference: test_soft_reference.c.
  */
-#include "support/laws.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #define SEED 4712UL
 #define R_LSB2 16U
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* 100 Hz, R 16 LSB^2: sigma 4, agreement within floor(3 sqrt(32) + 8) = 24 LSB, rate at most 8 LSB per sample. */
 static filter_config_t config_100hz(void)
@@ -22,8 +17,7 @@ static filter_config_t config_100hz(void)
 
 static filter_t settled(const filter_config_t *config, int16_t level)
 {
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, config));
+    filter_t f = made(&filter_law_soft, config);
     filter_reset(&f, level);
     return f;
 }
@@ -37,9 +31,8 @@ static int32_t step_to(const filter_t *at_zero, int16_t z)
 
 static void assert_same_as_plain(const filter_config_t *config, int16_t mask)
 {
-    filter_t f;
     filter_t k;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, config));
+    filter_t f = made(&filter_law_soft, config);
     TEST_ASSERT_TRUE(init_plain(&k, config));
     uint32_t random = SEED;
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(5000, 1000); i++) {
@@ -50,7 +43,7 @@ static void assert_same_as_plain(const filter_config_t *config, int16_t mask)
 }
 
 /* Off: any samples. On: samples of 0 to 7 LSB, which a soft gate of 2 sigma or more, 8 LSB, leaves alone. */
-static void without_or_within_the_soft_gate_it_is_the_kalman_filter(void)
+TEST(without_or_within_the_soft_gate_it_is_the_kalman_filter)
 {
     filter_config_t config = config_100hz();
     config.value[SOFT_RATE_MAX_LSB_S] = 1000000;
@@ -62,7 +55,7 @@ static void without_or_within_the_soft_gate_it_is_the_kalman_filter(void)
 }
 
 /* Any sample moves the estimate towards it, whatever R, gate and gain: the defect of a weight that rounds to zero. */
-static void no_sample_is_without_effect(void)
+TEST(no_sample_is_without_effect)
 {
     static const int32_t r_lsb2_q8[] = { 3, 20, 768, 20000, 256000 };
     static const uint16_t softs_q8[] = { 256, 512, 4096 };
@@ -78,9 +71,8 @@ static void no_sample_is_without_effect(void)
         }
         filter_t high = settled(&config, 4095); /* the largest innovation that rest allows */
         TEST_ASSERT_TRUE(step_to(&high, -4096) < (int32_t)4095 * 65536);
-        filter_probe_t probe;
         (void)filter_update(&high, -4096);
-        filter_probe(&high, &probe);
+        filter_probe_t probe = probe_of(&high);
         TEST_ASSERT_TRUE(probe.gain_uq16 > 0);
     }
 }
@@ -89,7 +81,7 @@ static void no_sample_is_without_effect(void)
  * Beyond the soft gate the step is P11 softgate^2 R / |r| and falls as |r| grows: by more than the 2^-18 of the weight
  * and a count of rounding, |r| 2^-18 P11 <= |r| / 2^18 here, it can rise nowhere.
  */
-static void the_step_falls_as_the_sample_gets_further(void)
+TEST(the_step_falls_as_the_sample_gets_further)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 0);
@@ -103,7 +95,7 @@ static void the_step_falls_as_the_sample_gets_further(void)
 }
 
 /* As sprf refuses it, so soft flags it: the two agree on every sample but those within 1/256 of the gate in r^2. */
-static void flag_is_at_the_gate_of_sprf(void)
+TEST(flag_is_at_the_gate_of_sprf)
 {
     static const uint16_t gates_q8[] = { 512, 768, 1536 };
     for (uint8_t i = 0; i < 3; i++) {
@@ -114,8 +106,7 @@ static void flag_is_at_the_gate_of_sprf(void)
         sprf_config.value[SPRF_R_LSB2_Q8] = config.value[SOFT_R_LSB2_Q8];
         sprf_config.value[SPRF_GATE_SIGMA_Q8] = config.value[SOFT_GATE_SIGMA_Q8];
         filter_t f = settled(&config, 0);
-        filter_t g;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&g, &filter_law_sprf, &sprf_config));
+        filter_t g = made(&filter_law_sprf, &sprf_config);
         filter_reset(&g, 0);
         for (int16_t z = 1; z < 200; z++) {
             filter_t soft = f;
@@ -133,7 +124,7 @@ static void flag_is_at_the_gate_of_sprf(void)
 }
 
 /* Between 2 and 3 sigma part of the sample is taken, no flag; beyond 3 the flag; without a gate never a flag. */
-static void taken_in_part_is_flagged_beyond_the_gate_only(void)
+TEST(taken_in_part_is_flagged_beyond_the_gate_only)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 0);
@@ -151,7 +142,7 @@ static void taken_in_part_is_flagged_beyond_the_gate_only(void)
 }
 
 /* A gate inside the soft gate flags what lies beyond the latter. */
-static void gate_inside_the_soft_gate_counts_from_the_latter(void)
+TEST(gate_inside_the_soft_gate_counts_from_the_latter)
 {
     filter_config_t config = config_100hz();
     config.value[SOFT_SOFT_SIGMA_Q8] = 1024;
@@ -165,7 +156,7 @@ static void gate_inside_the_soft_gate_counts_from_the_latter(void)
 }
 
 /* Rule CR by hand, as sprf: five flagged samples on 4 LSB per sample restart at the last with that rate. */
-static void consistent_run_restarts_on_its_slope(void)
+TEST(consistent_run_restarts_on_its_slope)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 0);
@@ -183,7 +174,7 @@ static void consistent_run_restarts_on_its_slope(void)
 }
 
 /* 80 and 4 LSB agree (8000 LSB/s: within 17 + 80), so that only its being taken whole lets 4 end the run. */
-static void run_ends_at_a_sample_within_the_gate(void)
+TEST(run_ends_at_a_sample_within_the_gate)
 {
     static const int16_t samples[] = { 80, 80, 80, 4, 80, 80, 80, 80 };
     filter_config_t config = config_100hz();
@@ -198,7 +189,7 @@ static void run_ends_at_a_sample_within_the_gate(void)
 }
 
 /* The same with a sample between the gates, which is taken in part and not flagged: 13 LSB. */
-static void run_ends_at_a_sample_between_the_gates(void)
+TEST(run_ends_at_a_sample_between_the_gates)
 {
     filter_config_t config = config_100hz();
     config.value[SOFT_RATE_MAX_LSB_S] = 8000;
@@ -215,7 +206,7 @@ static void run_ends_at_a_sample_between_the_gates(void)
  * and 8191 LSB are passed in sqrt(2 x 8191 / 0.00092) = 4220 samples. So it is for R = 16; a smaller R has the least m,
  * 2^-20, and P12 2^-20 8191 is as much, a larger one has more.
  */
-static void it_is_never_locked_out(void)
+TEST(it_is_never_locked_out)
 {
     static const int32_t r_lsb2_q8[] = { 3, 256, 768, 4096, 256000 };
     for (uint8_t i = ON_PC_OR_CHIP(0, 3); i < 5U; i++) {
@@ -233,22 +224,20 @@ static void it_is_never_locked_out(void)
 }
 
 /* With the least m, 2^-20, and P11 = 0.03 the gain is below its last place: x moves by a count all the same. */
-static void least_gain_moves_by_a_count(void)
+TEST(least_gain_moves_by_a_count)
 {
     filter_config_t config = filter_defaults(&filter_law_soft, 8000);
     config.value[SOFT_R_LSB2_Q8] = FILTER_R_MIN_LSB2_Q8;
     config.value[SOFT_Q_LSB2_S3] = 1;
     config.value[SOFT_SOFT_SIGMA_Q8] = 256;
     filter_t f = settled(&config, 0);
-    for (uint16_t k = 0; k < 3000U; k++) {
-        (void)filter_update(&f, 0);
-    }
+    feed(&f, 0, 3000);
     TEST_ASSERT_EQUAL_INT32(1, filter_update(&f, 4095));
     TEST_ASSERT_EQUAL_INT32(0, filter_update(&f, -4095));
 }
 
 /* The way of a run over a missing sample is unknown: it restarts without its slope. */
-static void run_with_a_gap_restarts_at_rest(void)
+TEST(run_with_a_gap_restarts_at_rest)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 0);
@@ -259,25 +248,6 @@ static void run_with_a_gap_restarts_at_rest(void)
         (void)filter_update(&f, (int16_t)(1000 + 4 * k));
     }
     TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, f.flags);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_INT32(0, probe.rate_lsb_q16);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(without_or_within_the_soft_gate_it_is_the_kalman_filter);
-    RUN_TEST(no_sample_is_without_effect);
-    RUN_TEST(the_step_falls_as_the_sample_gets_further);
-    RUN_TEST(flag_is_at_the_gate_of_sprf);
-    RUN_TEST(taken_in_part_is_flagged_beyond_the_gate_only);
-    RUN_TEST(gate_inside_the_soft_gate_counts_from_the_latter);
-    RUN_TEST(consistent_run_restarts_on_its_slope);
-    RUN_TEST(run_ends_at_a_sample_within_the_gate);
-    RUN_TEST(run_ends_at_a_sample_between_the_gates);
-    RUN_TEST(it_is_never_locked_out);
-    RUN_TEST(least_gain_moves_by_a_count);
-    RUN_TEST(run_with_a_gap_restarts_at_rest);
-    return UNITY_END();
 }

@@ -1,20 +1,12 @@
-/* soft against Eigen and the normal law: steps, weights, recovery. */
+/* soft against Eigen: steps, weights, recovery. */
 #include "reference/filters.h"
-#include "support/laws.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define SEED 4721
-#define GOLDEN "../shared/reference/golden_mls.csv"
 #define R_LSB2 16U
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* 100 Hz, R 16 LSB^2: sigma 4, agreement within floor(3 sqrt(32) + 8) = 24 LSB, rate at most 8 LSB per sample. */
 static filter_config_t config_100hz(void)
@@ -22,46 +14,6 @@ static filter_config_t config_100hz(void)
     filter_config_t config = filter_defaults(&filter_law_soft, 1000);
     config.value[SOFT_R_LSB2_Q8] = R_LSB2 * 256U;
     return config;
-}
-
-/*
- * Columns k, y, true, outlier, then four per filter; soft+ is the ninth. aux: 0 near, 1 beyond the gate, 2 restarted.
- */
-static void reference_follows_the_golden_rows(void)
-{
-    FILE *file = fopen(GOLDEN, "r");
-    if (file == NULL) {
-        TEST_IGNORE_MESSAGE(GOLDEN " is not there");
-    }
-    reference_filter_t f = { .period_s = 0.0247,
-                             .r = 0.0064,
-                             .r_gain = 0.0064,
-                             .q = { 0, 0, 0, 0.0009 },
-                             .gate2 = 9.0,
-                             .soft2 = 4.0,
-                             .reacquire = 5,
-                             .agree = 0.37,
-                             .x = { 2.8, 0.008 },
-                             .p = { 0.7, 0, 0, 0.04 } };
-    char line[2000];
-    int rows = 0;
-    while (fgets(line, sizeof line, file) != NULL) {
-        double column[40];
-        int n = 0;
-        for (char *word = strtok(line, ","); word != NULL && n < 40; word = strtok(NULL, ",")) {
-            column[n++] = atof(word);
-        }
-        if (n == 40 && line[0] != '#') {
-            reference_step(&f, column[1]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, column[36], f.x[0]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, column[37], f.x[1]);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-10, column[38], f.p[0]);
-            TEST_ASSERT_EQUAL_INT((int)column[39], f.reacquired ? 2 : (f.gated ? 1 : 0));
-            rows++;
-        }
-    }
-    fclose(file);
-    TEST_ASSERT_EQUAL_INT(200, rows);
 }
 
 /* The reference in the state that the filter is in; P in units of R, rates per sample. */
@@ -121,7 +73,7 @@ static void assert_step_equals_the_reference(const filter_t *start, int16_t z)
 }
 
 /* Any configuration, after any samples and gaps: P small and at its limit. */
-static void steps_beyond_the_soft_gate_equal_the_reference(void)
+TEST(steps_beyond_the_soft_gate_equal_the_reference)
 {
     uint32_t random = SEED;
     int compared = 0;
@@ -133,8 +85,7 @@ static void steps_beyond_the_soft_gate_equal_the_reference(void)
         config.value[SOFT_SOFT_SIGMA_Q8] = (uint16_t)(256U + random32_below(&random, 1024));
         config.value[SOFT_GATE_SIGMA_Q8] = 0;
         config.value[SOFT_RATE_MAX_LSB_S] = 1000000;
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, &config));
+        filter_t f = made(&filter_law_soft, &config);
         for (int k = 0; k < 40; k++) {
             int16_t z = (int16_t)random32_below(&random, 1U << random32_below(&random, 13));
             if (f.collected == FILTER_RUNNING) {
@@ -151,15 +102,12 @@ static void steps_beyond_the_soft_gate_equal_the_reference(void)
 }
 
 /* 15 % outliers of 20 sigma on a slow motion, no re-acquisition: the errors of both against the truth, within 2 %. */
-static void errors_equal_those_of_the_reference(void)
+TEST(errors_equal_those_of_the_reference)
 {
     filter_config_t config = config_100hz();
     config.value[SOFT_GATE_SIGMA_Q8] = 0;
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, &config));
-    for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)filter_update(&f, 0);
-    }
+    filter_t f = made(&filter_law_soft, &config);
+    feed(&f, 0, FILTER_WARM_UP_SAMPLES);
     reference_filter_t r;
     reference_library(&r, 100.0, R_LSB2, config.value[SOFT_Q_LSB2_S3], 0.0, 0, 800.0, 0.0);
     r.soft2 = 4.0;
@@ -180,70 +128,18 @@ static void errors_equal_those_of_the_reference(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.02 * exact, exact, fixed);
 }
 
-/* Samples until the estimate stays within 4 sigma of the noise for 10 samples after a step; 2000 when it does not. */
-static int samples_to_recover(test_random_t *random, const filter_config_t *config, double step_lsb, double outliers)
-{
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, config));
-    int good = 0;
-    for (int k = -300; k < 2000; k++) {
-        double level = k < 0 ? 0.0 : step_lsb;
-        double sigma = random_uniform(random) < outliers ? 80.0 : 4.0;
-        double x = filter_update(&f, as_sample(level + sigma * random_normal(random))) / 65536.0;
-        good = (k >= 0 && fabs(x - level) < 16.0) ? good + 1 : 0;
-        if (good == 10) {
-            return k - 9;
-        }
-    }
-    return 2000;
-}
-
-static void every_step_is_reacquired_within_200_samples(void)
-{
-    static const double outliers[] = { 0.0, 0.05, 0.15 };
-    static const double steps_sigma[] = { 1, 2, 3, 4, 5, 7, 10, 20, 50, 100 };
-    filter_config_t config = config_100hz();
-    test_random_t random;
-    random_seed(&random, SEED + 1);
-    printf("seed %d\n", SEED + 1);
-    for (int i = 0; i < 30; i++) {
-        for (int run = 0; run < 40; run++) {
-            int n = samples_to_recover(&random, &config, 4.0 * steps_sigma[i % 10], outliers[i / 10]);
-            TEST_ASSERT_LESS_OR_EQUAL_INT(200, n);
-        }
-    }
-}
-
-/* Flagged on clean noise: 2 (1 - Phi(3)) = 0.27 %, binomial 5 sigma of 60,000; S is a little too large, so fewer. */
-static void false_alarms_are_those_of_the_normal_law(void)
-{
-    filter_config_t config = config_100hz();
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, &config));
-    test_random_t random;
-    random_seed(&random, SEED + 2);
-    int flagged = 0;
-    for (int k = 0; k < 60000; k++) {
-        (void)filter_update(&f, as_sample(4.0 * random_normal(&random)));
-        flagged += (f.flags & FILTER_GATED) != 0;
-    }
-    TEST_ASSERT_LESS_OR_EQUAL_INT(162 + 64, flagged);
-    TEST_ASSERT_GREATER_THAN_INT(20, flagged);
-}
-
 /*
  * Alone, without re-acquisition, the soft gate follows a step of 2.5 to 10 sigma as its double does, in the same number
  * of samples within 2 %. (Of further ones it is slower: P stops at its limit, test_soft.c.)
  */
-static void without_reacquisition_it_returns_as_the_reference(void)
+TEST(without_reacquisition_it_returns_as_the_reference)
 {
     static const int steps_lsb[] = { 10, 20, 30, 40 };
     filter_config_t config = config_100hz();
     config.value[SOFT_REACQUIRE_SAMPLES] = 0;
     config.value[SOFT_RATE_MAX_LSB_S] = 1000000;
     for (int i = 0; i < 4; i++) {
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_soft, &config));
+        filter_t f = made(&filter_law_soft, &config);
         reference_filter_t r;
         reference_library(&r, 100.0, R_LSB2, config.value[SOFT_Q_LSB2_S3], 0.0, 0, 0.0, 0.0);
         r.soft2 = 4.0;
@@ -263,16 +159,4 @@ static void without_reacquisition_it_returns_as_the_reference(void)
         TEST_ASSERT_GREATER_THAN_INT(0, exact);
         TEST_ASSERT_INT_WITHIN(1U + (unsigned)exact / 50U, exact, fixed);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(reference_follows_the_golden_rows);
-    RUN_TEST(steps_beyond_the_soft_gate_equal_the_reference);
-    RUN_TEST(errors_equal_those_of_the_reference);
-    RUN_TEST(every_step_is_reacquired_within_200_samples);
-    RUN_TEST(false_alarms_are_those_of_the_normal_law);
-    RUN_TEST(without_reacquisition_it_returns_as_the_reference);
-    return UNITY_END();
 }

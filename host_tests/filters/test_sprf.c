@@ -2,15 +2,10 @@
  * sprf in integers, on the PC and on the chip: gate, re-acquisition on raw samples. Against the double reference:
  * test_sprf_reference.c.
  */
-#include "support/laws.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #define SEED 4711UL
 #define R_LSB2 16U
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* 100 Hz, R 16 LSB^2: sigma 4, agreement within floor(3 sqrt(32) + 8) = 24 LSB, rate at most 8 LSB per sample. */
 static filter_config_t config_100hz(void)
@@ -23,15 +18,12 @@ static filter_config_t config_100hz(void)
 /* Settled at level: 300 equal samples. */
 static filter_t settled(const filter_config_t *config, int16_t level)
 {
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf, config));
-    for (int k = 0; k < 300; k++) {
-        (void)filter_update(&f, level);
-    }
+    filter_t f = made(&filter_law_sprf, config);
+    feed(&f, level, 300);
     return f;
 }
 
-static void refused_sample_leaves_the_prediction(void)
+TEST(refused_sample_leaves_the_prediction)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 100);
@@ -42,14 +34,13 @@ static void refused_sample_leaves_the_prediction(void)
 }
 
 /* Without gate and with a rate limit out of reach sprf is kf. */
-static void without_gate_it_is_the_kalman_filter(void)
+TEST(without_gate_it_is_the_kalman_filter)
 {
     filter_config_t config = config_100hz();
     config.value[SPRF_GATE_SIGMA_Q8] = 0;
     config.value[SPRF_RATE_MAX_LSB_S] = 1000000;
-    filter_t f;
     filter_t k;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf, &config));
+    filter_t f = made(&filter_law_sprf, &config);
     TEST_ASSERT_TRUE(init_plain(&k, &config));
     uint32_t random = SEED;
     for (uint16_t i = 0; i < ON_PC_OR_CHIP(5000, 1000); i++) {
@@ -62,7 +53,7 @@ static void without_gate_it_is_the_kalman_filter(void)
  * Rule CR by hand: L refused samples on 4 LSB per sample restart at the last, rate 4, P = (1, 1/(L-1), 2/(L-1)^2 +
  * q22).
  */
-static void consistent_run_restarts_on_its_slope(void)
+TEST(consistent_run_restarts_on_its_slope)
 {
     static const uint16_t lengths[] = { 3, 5, 9 };
     for (uint8_t i = 0; i < 3; i++) {
@@ -85,7 +76,7 @@ static void consistent_run_restarts_on_its_slope(void)
 }
 
 /* 20 LSB per sample agree (limit 24) but are faster than the rate may be: 8. */
-static void restart_limits_the_rate(void)
+TEST(restart_limits_the_rate)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 0);
@@ -96,7 +87,7 @@ static void restart_limits_the_rate(void)
     TEST_ASSERT_INT32_WITHIN(64, (int32_t)8 * 65536, f.rate_lsb); /* 800 / 100 with 16-bit mantissas: 2^-13 relative */
 }
 
-static void disagreeing_run_never_restarts(void)
+TEST(disagreeing_run_never_restarts)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 0);
@@ -122,7 +113,7 @@ static uint8_t flags_of_20_samples_apart(const filter_config_t *config, int16_t 
  * Consecutive samples of a run differ by at most 3 sqrt(2 R) and the motion of one sample, rounded down: 16.97 + 8,
  * 0.46 + 8, 134.16 + 8 and, at 12.5 Hz, 16.97 + 64 LSB. At that distance they agree, one LSB further they do not.
  */
-static void agreement_ends_at_three_sigma_of_a_difference(void)
+TEST(agreement_ends_at_three_sigma_of_a_difference)
 {
     static const struct {
         uint16_t rate_dhz;
@@ -141,13 +132,11 @@ static void agreement_ends_at_three_sigma_of_a_difference(void)
  * Four of the five samples that restart, then a reset: a sample 20 LSB from the new level would agree with it (24), but
  * it begins a run, which takes five. It is refused: 3 sigma of the innovation, 12 sqrt(1 + P11 / R) LSB, stay below 20.
  */
-static void reset_forgets_the_run(void)
+TEST(reset_forgets_the_run)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 0);
-    for (int k = 0; k < 4; k++) {
-        (void)filter_update(&f, 1000);
-    }
+    feed(&f, 1000, 4);
     filter_reset(&f, 300);
     for (int k = 0; k < 4; k++) {
         TEST_ASSERT_EQUAL_INT32((int32_t)300 * 65536, filter_update(&f, 320));
@@ -157,7 +146,7 @@ static void reset_forgets_the_run(void)
     TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, f.flags);
 }
 
-static void run_ends_at_an_accepted_sample(void)
+TEST(run_ends_at_an_accepted_sample)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 0);
@@ -167,7 +156,7 @@ static void run_ends_at_an_accepted_sample(void)
     }
 }
 
-static void reacquisition_off_never_restarts(void)
+TEST(reacquisition_off_never_restarts)
 {
     filter_config_t config = config_100hz();
     config.value[SPRF_REACQUIRE_SAMPLES] = 0;
@@ -178,7 +167,7 @@ static void reacquisition_off_never_restarts(void)
 }
 
 /* A missing sample makes the slope unknown: the restart is at rest. Missing samples do not prevent it either. */
-static void run_with_a_gap_restarts_at_rest(void)
+TEST(run_with_a_gap_restarts_at_rest)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 0);
@@ -204,8 +193,7 @@ static void expect_a_stand(int16_t direction)
     for (int16_t k = 1; k <= 400; k++) {
         (void)filter_update(&f, (int16_t)(k * 4 * direction));
     }
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     int32_t x = probe.x_lsb_q16;
     int32_t rate = probe.rate_lsb_q16;
     TEST_ASSERT_INT32_WITHIN(1024, (int32_t)4 * direction * 65536, rate);
@@ -223,7 +211,7 @@ static void expect_a_stand(int16_t direction)
 }
 
 /* As published it has no other way back than P, and runs on by its rate. */
-static void without_reacquisition_it_runs_on(void)
+TEST(without_reacquisition_it_runs_on)
 {
     filter_config_t config = config_100hz();
     config.value[SPRF_REACQUIRE_SAMPLES] = 0;
@@ -231,8 +219,7 @@ static void without_reacquisition_it_runs_on(void)
     for (int16_t k = 1; k <= 400; k++) {
         (void)filter_update(&f, (int16_t)(k * 4));
     }
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     for (uint8_t k = 0; k < 20U; k++) {
         (void)filter_update(&f, (k & 1U) != 0U ? 4000 : -4000);
     }
@@ -241,14 +228,14 @@ static void without_reacquisition_it_runs_on(void)
     TEST_ASSERT_EQUAL_INT32(rate, probe.rate_lsb_q16);
 }
 
-static void where_nothing_agrees_it_comes_to_stand(void)
+TEST(where_nothing_agrees_it_comes_to_stand)
 {
     expect_a_stand(1);
     expect_a_stand(-1);
 }
 
 /* An accepted sample begins the count anew: the rate is held over 3 refused ones, however often they come. */
-static void rate_is_held_over_short_runs(void)
+TEST(rate_is_held_over_short_runs)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 0);
@@ -267,7 +254,7 @@ static void rate_is_held_over_short_runs(void)
 }
 
 /* From 30 Hz down three samples that agree restart it as shipped, above that five. */
-static void at_low_rates_three_samples_restart_it(void)
+TEST(at_low_rates_three_samples_restart_it)
 {
     static const uint16_t rates_dhz[] = { 50, 250, 300, 301, 1000, 8000 };
     for (uint8_t i = 0; i < 6U; i++) {
@@ -299,14 +286,14 @@ static void expect_doubt(int16_t direction)
     }
 }
 
-static void an_uncertain_rate_is_halved_by_refused_samples(void)
+TEST(an_uncertain_rate_is_halved_by_refused_samples)
 {
     expect_doubt(1);
     expect_doubt(-1);
 }
 
 /* A run beyond the range of samples: each is clamped and says so, the one that re-acquires too. */
-static void restart_on_a_clamped_sample_is_flagged_so(void)
+TEST(restart_on_a_clamped_sample_is_flagged_so)
 {
     filter_config_t config = config_100hz();
     filter_t f = settled(&config, 0);
@@ -314,26 +301,4 @@ static void restart_on_a_clamped_sample_is_flagged_so(void)
         (void)filter_update(&f, 5000);
         TEST_ASSERT_EQUAL_UINT8(FILTER_SATURATED | ((k < 5U) ? FILTER_GATED : FILTER_REACQUIRED), f.flags);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(refused_sample_leaves_the_prediction);
-    RUN_TEST(without_gate_it_is_the_kalman_filter);
-    RUN_TEST(consistent_run_restarts_on_its_slope);
-    RUN_TEST(restart_limits_the_rate);
-    RUN_TEST(disagreeing_run_never_restarts);
-    RUN_TEST(agreement_ends_at_three_sigma_of_a_difference);
-    RUN_TEST(restart_on_a_clamped_sample_is_flagged_so);
-    RUN_TEST(reset_forgets_the_run);
-    RUN_TEST(run_ends_at_an_accepted_sample);
-    RUN_TEST(reacquisition_off_never_restarts);
-    RUN_TEST(run_with_a_gap_restarts_at_rest);
-    RUN_TEST(where_nothing_agrees_it_comes_to_stand);
-    RUN_TEST(rate_is_held_over_short_runs);
-    RUN_TEST(at_low_rates_three_samples_restart_it);
-    RUN_TEST(an_uncertain_rate_is_halved_by_refused_samples);
-    RUN_TEST(without_reacquisition_it_runs_on);
-    return UNITY_END();
 }

@@ -1,26 +1,18 @@
 /* sprf_paper in integers, on the PC and on the chip: gate, no robust start, lock-out. Against double:
  * test_wide_reference.c. */
-#include "support/laws.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test_law.h"
 
 /* 100 Hz, R 16 LSB^2: sigma 4 LSB. */
 static filter_t settled(int16_t level)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_sprf_paper, 1000);
     config.value[SPRF_PAPER_R_LSB2_Q8] = 16U * 256U;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf_paper, &config));
-    for (uint16_t k = 0; k < 300; k++) {
-        (void)filter_update(&f, level);
-    }
+    filter_t f = made(&filter_law_sprf_paper, &config);
+    feed(&f, level, 300);
     return f;
 }
 
-static void gate_is_two_sigma_by_default_and_never_off(void)
+TEST(gate_is_two_sigma_by_default_and_never_off)
 {
     filter_t f;
     filter_config_t config = filter_defaults(&filter_law_sprf_paper, 1000);
@@ -31,12 +23,11 @@ static void gate_is_two_sigma_by_default_and_never_off(void)
 }
 
 /* The limit that the probe tells, gate^2 R S; the integers on either side of it decide differently. */
-static void samples_within_the_limit_are_taken(void)
+TEST(samples_within_the_limit_are_taken)
 {
     filter_t f = settled(0);
-    filter_probe_t probe;
     (void)filter_update(&f, 0);
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     /* S = P11 + 1 = 1 / (1 - w1): gate^2 R S = 4 x 16 x 256 / (1 - w1) in Q8 */
     uint32_t expected_q8 = (uint32_t)(4UL * 16UL * 256UL * 65536ULL / (65536UL - probe.gain_uq16));
     TEST_ASSERT_UINT32_WITHIN(expected_q8 / 1000U, expected_q8, probe.gate_lsb2_q8);
@@ -49,7 +40,7 @@ static void samples_within_the_limit_are_taken(void)
     TEST_ASSERT_EQUAL_UINT8(FILTER_GATED, outside.flags);
 }
 
-static void refused_sample_leaves_the_prediction(void)
+TEST(refused_sample_leaves_the_prediction)
 {
     filter_t f = settled(100);
     TEST_ASSERT_EQUAL_INT32((int32_t)100 * 65536, filter_update(&f, 2000));
@@ -59,13 +50,12 @@ static void refused_sample_leaves_the_prediction(void)
 }
 
 /* The first sample is the estimate, P11 = R: an outlier of 20 sigma there makes outliers of all that follow. */
-static void an_outlier_at_the_start_locks_out(void)
+TEST(an_outlier_at_the_start_locks_out)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_sprf_paper, 1000);
     config.value[SPRF_PAPER_R_LSB2_Q8] = 16U * 256U;
     config.value[SPRF_PAPER_Q_LSB2_S3] = 1;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf_paper, &config));
+    filter_t f = made(&filter_law_sprf_paper, &config);
     TEST_ASSERT_EQUAL_UINT8(FILTER_WARMING_UP, f.flags);
     TEST_ASSERT_EQUAL_INT32((int32_t)80 * 65536, filter_update(&f, 80));
     TEST_ASSERT_EQUAL_UINT8(FILTER_WARMING_UP, f.flags);
@@ -81,7 +71,7 @@ static void an_outlier_at_the_start_locks_out(void)
  * After a step of 80 LSB, 20 sigma, the gate opens with the first S = P11 + 1 of 20^2 / 2^2 = 100 and more: not before,
  * and not later; no run of equal samples opens it.
  */
-static void gate_opens_only_when_p_has_grown_to_the_step(void)
+TEST(gate_opens_only_when_p_has_grown_to_the_step)
 {
     filter_t f = settled(0);
     uint16_t k = 0;
@@ -97,12 +87,11 @@ static void gate_opens_only_when_p_has_grown_to_the_step(void)
 }
 
 /* A step that P cannot grow to, 4000 LSB at sigma 0.1: refused to the end of P's range, then taken. */
-static void end_of_the_range_ends_the_lock_out(void)
+TEST(end_of_the_range_ends_the_lock_out)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_sprf_paper, 1000);
     config.value[SPRF_PAPER_R_LSB2_Q8] = FILTER_R_MIN_LSB2_Q8;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_sprf_paper, &config));
+    filter_t f = made(&filter_law_sprf_paper, &config);
     filter_reset(&f, 0);
     uint16_t k = 0;
     while (filter_update(&f, 4000) == 0 && k < 400U) {
@@ -111,16 +100,4 @@ static void end_of_the_range_ends_the_lock_out(void)
     }
     TEST_ASSERT_TRUE(k > 3U && k < 400U);
     TEST_ASSERT_EQUAL_UINT8(FILTER_REACQUIRED, f.flags);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(gate_is_two_sigma_by_default_and_never_off);
-    RUN_TEST(samples_within_the_limit_are_taken);
-    RUN_TEST(refused_sample_leaves_the_prediction);
-    RUN_TEST(an_outlier_at_the_start_locks_out);
-    RUN_TEST(gate_opens_only_when_p_has_grown_to_the_step);
-    RUN_TEST(end_of_the_range_ends_the_lock_out);
-    return UNITY_END();
 }

@@ -1,18 +1,13 @@
 /* synth: its start, its two-product form and its presets on integers; runs on the PC and on the chip. */
-#include "support/laws.h"
-#include "unity.h"
+#include "support/test_law.h"
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
-static void make(filter_t *f, int32_t a1_q16, int32_t b0_uq16)
+static filter_t made_synth(int32_t a1_q16, int32_t b0_uq16)
 {
     filter_config_t config = filter_defaults(&filter_law_synth, 1000);
     config.value[SYNTH_A1_Q16] = a1_q16;
     config.value[SYNTH_B0_UQ16] = b0_uq16;
     config.value[SYNTH_RATE_MAX_LSB_S] = RATE_UNLIMITED_LSB_S;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_synth, &config));
+    return made(&filter_law_synth, &config);
 }
 
 /* a1 and b0 of paper 001, -0.3 and 0.1 in units of 2^-16, rounded. */
@@ -25,7 +20,7 @@ static filter_config_t of_paper_001(void)
 }
 
 /* 0 and 0.3 in units of 2^-16, rounded; 0.003 LSB^2 per 0.1 Hz. */
-static void shipped_values_are_those_of_paper_000(void)
+TEST(shipped_values_are_those_of_paper_000)
 {
     filter_config_t config = filter_defaults(&filter_law_synth, 1000);
     TEST_ASSERT_EQUAL_UINT16(1000, config.rate_dhz);
@@ -38,7 +33,7 @@ static void shipped_values_are_those_of_paper_000(void)
  * 1 + 2 a1 (1 - b0) = 0 lies at a1 = -2/3 = -43690.7 / 65536 for b0 = 1/4, and for a1 = -65535 / 65536 at
  * b0 = 32767.5 / 65536. With a1 >= 0 any gain is stable, at the corners of the range too.
  */
-static void border_of_the_region_is_outside(void)
+TEST(border_of_the_region_is_outside)
 {
     static const struct {
         int32_t a1_q16;
@@ -66,15 +61,14 @@ static void border_of_the_region_is_outside(void)
  * 2) / (n (n + 1)). A gain is off by 2^-17 of an innovation, and these sum to less than 10 s; each product is rounded
  * by half a count: 10 s + 60 counts.
  */
-static void start_on_a_ramp_catches_up(void)
+TEST(start_on_a_ramp_catches_up)
 {
     static const int16_t slopes_lsb[] = { 3, 8, -8, 40 };
     for (uint8_t i = 0; i < sizeof slopes_lsb / sizeof slopes_lsb[0]; i++) {
         int32_t slope = slopes_lsb[i];
         int64_t before = -slope * 65536;
         int64_t off = -2 * slope * 65536;
-        filter_t f;
-        make(&f, 0, 656);
+        filter_t f = made_synth(0, 656);
         for (int32_t n = 1; n <= 63; n++) {
             int32_t x = filter_update(&f, (int16_t)(slope * n));
             if (n > FILTER_WARM_UP_SAMPLES) {
@@ -89,17 +83,15 @@ static void start_on_a_ramp_catches_up(void)
 
 static uint16_t gain_of_next_sample(filter_t *f)
 {
-    filter_probe_t probe;
     (void)filter_update(f, 7);
-    filter_probe(f, &probe);
+    filter_probe_t probe = probe_of(f);
     return probe.gain_uq16;
 }
 
 /* (4 n - 2) / (n (n + 1)) in 2^-16, rounded, for n = 6..63; b0 = 0.01 stays below all of them, then it is the gain. */
-static void start_gains_are_those_of_a_line(void)
+TEST(start_gains_are_those_of_a_line)
 {
-    filter_t f;
-    make(&f, 0, 656);
+    filter_t f = made_synth(0, 656);
     for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
         TEST_ASSERT_EQUAL_UINT16(0, gain_of_next_sample(&f));
     }
@@ -111,19 +103,16 @@ static void start_gains_are_those_of_a_line(void)
 }
 
 /* n = 11: 42/132 = 0.318; n = 12: 46/156 = 0.295 is no longer above 0.3. */
-static void start_ends_at_the_first_gain_that_is_not_above(void)
+TEST(start_ends_at_the_first_gain_that_is_not_above)
 {
-    filter_t f;
-    make(&f, 0, 19661);
-    for (uint8_t n = 1; n <= 10; n++) {
-        (void)filter_update(&f, 7);
-    }
+    filter_t f = made_synth(0, 19661);
+    feed(&f, 7, 10);
     TEST_ASSERT_EQUAL_UINT16(20852, gain_of_next_sample(&f));
     TEST_ASSERT_EQUAL_UINT16(19661, gain_of_next_sample(&f));
 }
 
 /* What a person reads: value / 2^fraction bits is 0.3, -0.3, 3 LSB^2 (to the last bit of the format). */
-static void descriptor_has_the_binary_points(void)
+TEST(descriptor_has_the_binary_points)
 {
     filter_config_t config = of_paper_001();
     TEST_ASSERT_EQUAL_UINT8(4, parameter_count(FILTER_KIND_synth));
@@ -144,14 +133,13 @@ static void descriptor_has_the_binary_points(void)
  * ratemax 800 LSB/s at 100 Hz is 8 LSB a sample, b0 = 1/2: after rest at 0 a sample of 16 gives a rate of 8, one of 18
  * would give 9. The estimate itself moves all the same, and the next prediction goes on by 8.
  */
-static void one_sample_turns_the_rate_up_to_its_limit(void)
+TEST(one_sample_turns_the_rate_up_to_its_limit)
 {
     for (int16_t sign = -1; sign <= 1; sign = (int16_t)(sign + 2)) {
         for (int16_t z_lsb = 14; z_lsb <= 18; z_lsb = (int16_t)(z_lsb + 2)) {
-            filter_t f;
             filter_config_t config = filter_defaults(&filter_law_synth, 1000);
             config.value[SYNTH_B0_UQ16] = 32768;
-            TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth, &config));
+            filter_t f = made(&filter_law_synth, &config);
             filter_reset(&f, 0);
             TEST_ASSERT_EQUAL_INT32(sign * z_lsb * 32768L, filter_update(&f, (int16_t)(sign * z_lsb)));
             TEST_ASSERT_EQUAL_UINT8(z_lsb > 16 ? FILTER_SATURATED : 0, f.flags);
@@ -162,13 +150,12 @@ static void one_sample_turns_the_rate_up_to_its_limit(void)
 }
 
 /* a1 = -1/2, b0 = 1/2: 100 after rest at 0 gives 50 and a rate of 8; bent, x_e would go on by 12, then by 10. */
-static void bent_predictions_are_limited_too(void)
+TEST(bent_predictions_are_limited_too)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_synth, 1000);
     config.value[SYNTH_A1_Q16] = -32768;
     config.value[SYNTH_B0_UQ16] = 32768;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth, &config));
+    filter_t f = made(&filter_law_synth, &config);
     filter_reset(&f, 0);
     TEST_ASSERT_EQUAL_INT32(50L * 65536, filter_update(&f, 100));
     TEST_ASSERT_EQUAL_INT32(62L * 65536, coast(&f));
@@ -176,12 +163,11 @@ static void bent_predictions_are_limited_too(void)
 }
 
 /* Two bad samples among the first five change nothing: the start is their median. */
-static void outliers_in_the_start_cost_nothing(void)
+TEST(outliers_in_the_start_cost_nothing)
 {
     for (uint8_t one = 0; one < FILTER_WARM_UP_SAMPLES; one++) {
         for (uint8_t other = 0; other < FILTER_WARM_UP_SAMPLES; other++) {
-            filter_t f;
-            make(&f, 0, 656);
+            filter_t f = made_synth(0, 656);
             for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
                 (void)filter_update(&f, (int16_t)((k == one) ? 4000 : (k == other) ? -900 : 7));
             }
@@ -193,11 +179,10 @@ static void outliers_in_the_start_cost_nothing(void)
 }
 
 /* Impulse response by hand from equation (7), a1 = -0.3, b0 = 0.1: 0.1, 0.207, 0.28449, 0.317814 (x 4000 LSB). */
-static void impulse_response_is_that_of_equation_7(void)
+TEST(impulse_response_is_that_of_equation_7)
 {
     static const int32_t expected_milli_lsb[] = { 400000, 828000, 1137960, 1271256 };
-    filter_t f;
-    make(&f, -19661, 6554);
+    filter_t f = made_synth(-19661, 6554);
     filter_reset(&f, 0);
     for (uint8_t k = 0; k < 4; k++) {
         int32_t x = filter_update(&f, (k == 0) ? 4000 : 0);
@@ -208,10 +193,9 @@ static void impulse_response_is_that_of_equation_7(void)
 }
 
 /* Coasting is the extrapolation: after a settled ramp of 2 LSB a sample it goes on by 2. */
-static void coast_goes_on_along_the_line(void)
+TEST(coast_goes_on_along_the_line)
 {
-    filter_t f;
-    make(&f, 0, 32768);
+    filter_t f = made_synth(0, 32768);
     for (int16_t k = 0; k < 200; k++) {
         (void)filter_update(&f, (int16_t)(2 * k));
     }
@@ -219,8 +203,7 @@ static void coast_goes_on_along_the_line(void)
     (void)coast(&f);
     TEST_ASSERT_INT32_WITHIN(655, 2L * 202 * 65536, coast(&f));
     TEST_ASSERT_EQUAL_UINT8(FILTER_COASTED, f.flags);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_INT32(0, probe.innovation_lsb_q16);
     TEST_ASSERT_EQUAL_UINT16(0, probe.gain_uq16);
     TEST_ASSERT_INT32_WITHIN(655, 2L * 65536, probe.rate_lsb_q16);
@@ -230,11 +213,10 @@ static void coast_goes_on_along_the_line(void)
  * a1 = -1/2, b0 = 1/2, exact in Q16: 1000 after rest at 0 gives 500, 0, 0; then 2 x1 - x2 + (x1 - 2 x2 + x3) / 2 again
  * and again: 1250, 2125, 3062.5, 4031.25, and 5015.625 is beyond the format.
  */
-static void coast_bends_with_a1_up_to_the_bound(void)
+TEST(coast_bends_with_a1_up_to_the_bound)
 {
     static const int32_t expected_quarter_lsb[] = { 5000, 8500, 12250, 16125 };
-    filter_t f;
-    make(&f, -32768, 32768);
+    filter_t f = made_synth(-32768, 32768);
     filter_reset(&f, 0);
     TEST_ASSERT_EQUAL_INT32(500L * 65536, filter_update(&f, 1000));
     for (uint8_t k = 0; k < 4; k++) {
@@ -246,24 +228,19 @@ static void coast_bends_with_a1_up_to_the_bound(void)
 }
 
 /* A sample that comes after a gap is not counted twice by the start: its gains go by samples seen. */
-static void coast_in_the_start_does_not_count(void)
+TEST(coast_in_the_start_does_not_count)
 {
-    filter_t f;
-    make(&f, 0, 19661);
-    for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)filter_update(&f, 7);
-    }
+    filter_t f = made_synth(0, 19661);
+    feed(&f, 7, FILTER_WARM_UP_SAMPLES);
     (void)coast(&f);
     (void)filter_update(&f, 7);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_UINT16(34328, probe.gain_uq16);
 }
 
-static void coast_before_any_sample_is_zero(void)
+TEST(coast_before_any_sample_is_zero)
 {
-    filter_t f;
-    make(&f, -19661, 6554);
+    filter_t f = made_synth(-19661, 6554);
     TEST_ASSERT_EQUAL_INT32(0, coast(&f));
     TEST_ASSERT_EQUAL_UINT8(FILTER_WARMING_UP | FILTER_COASTED, f.flags);
 }
@@ -272,20 +249,18 @@ static void coast_before_any_sample_is_zero(void)
  * R = 3 LSB^2: one sample's variance in the start, then 0.548387 x 3 = 1.645 (421 / 256) at (0, 0.3), 0.822358 x 3 at
  * the paper's.
  */
-static void probe_reports_the_variance(void)
+TEST(probe_reports_the_variance)
 {
-    filter_probe_t probe;
-    filter_t f;
-    make(&f, 0, 19661);
+    filter_t f = made_synth(0, 19661);
     (void)filter_update(&f, 5);
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_UINT32(768, probe.p_lsb2_q8);
     TEST_ASSERT_EQUAL_INT32(5L * 65536, probe.x_lsb_q16);
     TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, probe.gate_lsb2_q8);
     filter_reset(&f, 5);
     filter_probe(&f, &probe);
     TEST_ASSERT_UINT32_WITHIN(1, 421, probe.p_lsb2_q8);
-    make(&f, -19661, 6554);
+    f = made_synth(-19661, 6554);
     filter_reset(&f, 5);
     filter_probe(&f, &probe);
     TEST_ASSERT_UINT32_WITHIN(1, 632, probe.p_lsb2_q8);
@@ -295,11 +270,10 @@ static void probe_reports_the_variance(void)
 }
 
 /* The paper's preset overshoots a full-range step by 69 %: the bound of the format cuts that off and the flag tells. */
-static void overshoot_beyond_the_format_is_flagged(void)
+TEST(overshoot_beyond_the_format_is_flagged)
 {
-    filter_t f;
     uint8_t flags = 0;
-    make(&f, -19661, 6554);
+    filter_t f = made_synth(-19661, 6554);
     filter_reset(&f, -4096);
     for (uint8_t k = 0; k < 20; k++) {
         int32_t x = filter_update(&f, 4095);
@@ -310,12 +284,11 @@ static void overshoot_beyond_the_format_is_flagged(void)
 }
 
 /* With an extrapolation that sees the curvature, which a damp must not make. */
-static void damp_bends_nothing(void)
+TEST(damp_bends_nothing)
 {
-    filter_t f;
     filter_config_t config = filter_defaults(&filter_law_synth, 1000);
     config.value[SYNTH_A1_Q16] = -19661; /* -0.3 */
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth, &config));
+    filter_t f = made(&filter_law_synth, &config);
     filter_reset(&f, 0);
     for (int16_t k = 1; k <= 400; k++) {
         (void)filter_update(&f, (int16_t)(k * 3));
@@ -323,27 +296,4 @@ static void damp_bends_nothing(void)
     int32_t x = coast_only(&f);
     filter_tracker_damp(&f);
     TEST_ASSERT_INT32_WITHIN(65536 / 64, 3 * 65536L / 2, coast_only(&f) - x);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(shipped_values_are_those_of_paper_000);
-    RUN_TEST(border_of_the_region_is_outside);
-    RUN_TEST(start_on_a_ramp_catches_up);
-    RUN_TEST(start_gains_are_those_of_a_line);
-    RUN_TEST(start_ends_at_the_first_gain_that_is_not_above);
-    RUN_TEST(descriptor_has_the_binary_points);
-    RUN_TEST(one_sample_turns_the_rate_up_to_its_limit);
-    RUN_TEST(bent_predictions_are_limited_too);
-    RUN_TEST(outliers_in_the_start_cost_nothing);
-    RUN_TEST(impulse_response_is_that_of_equation_7);
-    RUN_TEST(coast_goes_on_along_the_line);
-    RUN_TEST(coast_bends_with_a1_up_to_the_bound);
-    RUN_TEST(coast_in_the_start_does_not_count);
-    RUN_TEST(coast_before_any_sample_is_zero);
-    RUN_TEST(probe_reports_the_variance);
-    RUN_TEST(overshoot_beyond_the_format_is_flagged);
-    RUN_TEST(damp_bends_nothing);
-    return UNITY_END();
 }

@@ -1,33 +1,25 @@
 /* synth_opt: its schedule, classes and start on integers; runs on the PC and on the chip. */
-#include "support/laws.h"
-#include "unity.h"
+#include "support/test_law.h"
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
-static void make(filter_t *f, int32_t variant_u, int32_t p0_lsb2_q8, int32_t r_lsb2_q8)
+static filter_t made_opt(int32_t variant_u, int32_t p0_lsb2_q8, int32_t r_lsb2_q8)
 {
     filter_config_t config = { 1000,
                                { [SYNTH_OPT_VARIANT_U] = variant_u,
                                  [SYNTH_OPT_P0_LSB2_Q8] = p0_lsb2_q8,
                                  [SYNTH_OPT_R_LSB2_Q8] = r_lsb2_q8,
                                  [SYNTH_OPT_RATE_MAX_LSB_S] = RATE_UNLIMITED_LSB_S } };
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_synth_opt, &config));
+    return made(&filter_law_synth_opt, &config);
 }
 
 static void warm_up(filter_t *f, int16_t z_lsb)
 {
-    for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-        (void)filter_update(f, z_lsb);
-    }
+    feed(f, z_lsb, FILTER_WARM_UP_SAMPLES);
 }
 
 static uint16_t gain_of_next_sample(filter_t *f)
 {
-    filter_probe_t probe;
     (void)filter_update(f, 7);
-    filter_probe(f, &probe);
+    filter_probe_t probe = probe_of(f);
     return probe.gain_uq16;
 }
 
@@ -36,10 +28,9 @@ static uint16_t gain_of_next_sample(filter_t *f)
  * P0 / (P0 + R) = 16/17; after them S11 = S22 = 16/17 R and S12 = 16/289 R, so Pe = 4 S11 - 4 S12 + S22 = 1296/289 R
  * and the third is 1296/1585. Limit 2/3.
  */
-static void schedule_of_16_by_hand(void)
+TEST(schedule_of_16_by_hand)
 {
-    filter_t f;
-    make(&f, 0, 25600, 1600);
+    filter_t f = made_opt(0, 25600, 1600);
     warm_up(&f, 7);
     TEST_ASSERT_EQUAL_UINT16(61681, gain_of_next_sample(&f));
     TEST_ASSERT_EQUAL_UINT16(61681, gain_of_next_sample(&f));
@@ -53,36 +44,32 @@ static void schedule_of_16_by_hand(void)
 }
 
 /* First gain of U: Pe = ((2 + 1/6)^2 + (4/3)^2 + 1/36) P0 = 6.5 P0, b0 = 104/105 for 16. Limit 11/13. */
-static void schedule_of_u_by_hand(void)
+TEST(schedule_of_u_by_hand)
 {
-    filter_t f;
-    make(&f, 1, 25600, 1600);
+    filter_t f = made_opt(1, 25600, 1600);
     warm_up(&f, 7);
     TEST_ASSERT_EQUAL_UINT16(64912, gain_of_next_sample(&f));
-    for (uint8_t k = 1; k < 12; k++) {
-        (void)filter_update(&f, 7);
-    }
+    feed(&f, 7, 11);
     TEST_ASSERT_EQUAL_UINT16(55454, gain_of_next_sample(&f));
 }
 
 /* a1 of U's limit is -1/6: from 600 after rest at 0, b0 = 11/13: 507.69; then 2 x1 + x1 / 6. Exact has 2 x1. */
-static void coast_extrapolates_with_the_limit_of_a1(void)
+TEST(coast_extrapolates_with_the_limit_of_a1)
 {
-    filter_t f;
-    make(&f, 1, 25600, 1600);
+    filter_t f = made_opt(1, 25600, 1600);
     filter_reset(&f, 0);
     int32_t x = filter_update(&f, 600);
     TEST_ASSERT_INT32_WITHIN(600, (int32_t)600 * 65536 / 13 * 11, x);
     TEST_ASSERT_INT32_WITHIN(600, 2 * x + x / 6, coast(&f));
     TEST_ASSERT_EQUAL_UINT8(FILTER_COASTED, f.flags);
-    make(&f, 0, 25600, 1600);
+    f = made_opt(0, 25600, 1600);
     filter_reset(&f, 0);
     x = filter_update(&f, 600);
     TEST_ASSERT_EQUAL_INT32(2 * x, coast(&f));
 }
 
 /* The border between 4^i and 4^(i + 1) is 2 x 4^i; below 1 and above 1024 the last class goes on. */
-static void class_is_the_nearest_ratio(void)
+TEST(class_is_the_nearest_ratio)
 {
     static const struct {
         int32_t p0_lsb2_q8, r_lsb2_q8;
@@ -93,17 +80,15 @@ static void class_is_the_nearest_ratio(void)
         { 131073, 256, 5 }, { 25600000, 3, 5 }, { 25600000, 256000, 3 },
     };
     for (uint8_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        filter_t f;
-        make(&f, 0, cases[i].p0_lsb2_q8, cases[i].r_lsb2_q8);
+        filter_t f = made_opt(0, cases[i].p0_lsb2_q8, cases[i].r_lsb2_q8);
         TEST_ASSERT_EQUAL_UINT8(cases[i].ratio_class, f.own.synth.of.scheduled.ratio_class);
     }
 }
 
 /* R set during the warm-up counts, R set later changes no gain. */
-static void noise_counts_until_the_schedule_runs(void)
+TEST(noise_counts_until_the_schedule_runs)
 {
-    filter_t f;
-    make(&f, 0, 25600, 1600);
+    filter_t f = made_opt(0, 25600, 1600);
     (void)filter_update(&f, 7);
     filter_set_noise(&f, 25600);
     TEST_ASSERT_EQUAL_UINT8(0, f.own.synth.of.scheduled.ratio_class);
@@ -116,11 +101,10 @@ static void noise_counts_until_the_schedule_runs(void)
 }
 
 /* Every gain of every class within the clamps of safe switching: b0 from 1/2 up, a1 from -1/3 to 0. */
-static void gains_are_within_the_clamps(void)
+TEST(gains_are_within_the_clamps)
 {
     for (uint8_t turn = 0; turn < 12; turn++) {
-        filter_t f;
-        make(&f, turn & 1, 1L << (8 + 2 * (turn >> 1)), 256);
+        filter_t f = made_opt(turn & 1, 1L << (8 + 2 * (turn >> 1)), 256);
         TEST_ASSERT_EQUAL_UINT8(turn >> 1, f.own.synth.of.scheduled.ratio_class);
         warm_up(&f, 7);
         for (uint8_t k = 0; k < 16; k++) {
@@ -137,11 +121,10 @@ static void gains_are_within_the_clamps(void)
 }
 
 /* Five samples with one outlier: the estimates start on their median, at rest, the outlier does not count. */
-static void start_is_the_median(void)
+TEST(start_is_the_median)
 {
     static const int16_t z_lsb[FILTER_WARM_UP_SAMPLES] = { 40, 44, -4000, 42, 43 };
-    filter_t f;
-    make(&f, 0, 25600, 1600);
+    filter_t f = made_opt(0, 25600, 1600);
     int32_t x = 0;
     for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
         x = filter_update(&f, z_lsb[k]);
@@ -152,10 +135,9 @@ static void start_is_the_median(void)
 }
 
 /* A gap does not use up the schedule; a reset ends it, as if z0 had been read for ever. */
-static void schedule_goes_by_samples_seen(void)
+TEST(schedule_goes_by_samples_seen)
 {
-    filter_t f;
-    make(&f, 0, 25600, 1600);
+    filter_t f = made_opt(0, 25600, 1600);
     warm_up(&f, 7);
     (void)gain_of_next_sample(&f);
     for (uint8_t k = 0; k < 30; k++) {
@@ -168,13 +150,11 @@ static void schedule_goes_by_samples_seen(void)
 }
 
 /* A sample's variance while warming up, R b0 in the schedule (16/17 R), 2/3 R behind it, and of U 0.8059 R. */
-static void probe_reports_the_variance(void)
+TEST(probe_reports_the_variance)
 {
-    filter_probe_t probe;
-    filter_t f;
-    make(&f, 0, 409600, 25600);
+    filter_t f = made_opt(0, 409600, 25600);
     warm_up(&f, 7);
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_UINT32(25600, probe.p_lsb2_q8);
     (void)filter_update(&f, 7);
     filter_probe(&f, &probe);
@@ -182,7 +162,7 @@ static void probe_reports_the_variance(void)
     filter_reset(&f, 7);
     filter_probe(&f, &probe);
     TEST_ASSERT_UINT32_WITHIN(4, 17067, probe.p_lsb2_q8);
-    make(&f, 1, 409600, 25600);
+    f = made_opt(1, 409600, 25600);
     filter_reset(&f, 7);
     filter_probe(&f, &probe);
     TEST_ASSERT_UINT32_WITHIN(4, 20632, probe.p_lsb2_q8);
@@ -192,7 +172,7 @@ static void probe_reports_the_variance(void)
  * 400 LSB/s x T squared and 19/64 of R = 0.003 LSB^2 per 0.1 Hz: 16 + 0.89 LSB^2 at 100 Hz, 256 + 0.22 at 25 Hz and,
  * the motion rounded down to 1/16 LSB, 0.25 + 7.1 at 800 Hz.
  */
-static void default_p0_is_that_of_the_median(void)
+TEST(default_p0_is_that_of_the_median)
 {
     static const struct {
         uint16_t rate_dhz;
@@ -206,32 +186,13 @@ static void default_p0_is_that_of_the_median(void)
 }
 
 /* ratemax 800 LSB/s at 100 Hz is 8 LSB a sample: b0 x 9 is below it, b0 x 15 is 10. */
-static void one_sample_turns_the_rate_up_to_its_limit(void)
+TEST(one_sample_turns_the_rate_up_to_its_limit)
 {
     for (uint8_t k = 0; k < 2; k++) {
-        filter_t f;
-        filter_config_t config = filter_defaults(&filter_law_synth_opt, 1000);
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_opt, &config));
+        filter_t f = made_default(&filter_law_synth_opt, 1000);
         filter_reset(&f, 0);
         int32_t x = filter_update(&f, (k == 0U) ? 9 : 15);
         TEST_ASSERT_EQUAL_UINT8((k == 0U) ? 0 : FILTER_SATURATED, f.flags);
         TEST_ASSERT_EQUAL_INT32((k == 0U) ? x : 8L * 65536, coast(&f) - x);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(schedule_of_16_by_hand);
-    RUN_TEST(schedule_of_u_by_hand);
-    RUN_TEST(coast_extrapolates_with_the_limit_of_a1);
-    RUN_TEST(class_is_the_nearest_ratio);
-    RUN_TEST(noise_counts_until_the_schedule_runs);
-    RUN_TEST(gains_are_within_the_clamps);
-    RUN_TEST(start_is_the_median);
-    RUN_TEST(schedule_goes_by_samples_seen);
-    RUN_TEST(probe_reports_the_variance);
-    RUN_TEST(default_p0_is_that_of_the_median);
-    RUN_TEST(one_sample_turns_the_rate_up_to_its_limit);
-    return UNITY_END();
 }

@@ -1,12 +1,8 @@
 /* synth and synth_opt: the sums that the rule for their estimates stands on (support/envelope.h). */
 #include "support/filters.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* Sum of the magnitudes of the answer to one sample of 1 of the filter x_e = 2 x1 - x2 with the gain b0. */
 static double straight_line_sum(double b0)
@@ -24,15 +20,8 @@ static double straight_line_sum(double b0)
     return sum;
 }
 
-static void gain_sums_are_as_stated(void)
+TEST(gain_sums_are_as_stated)
 {
     TEST_ASSERT_DOUBLE_WITHIN(5e-4, law_facts(FILTER_KIND_synth).envelope.gain_sum, straight_line_sum(0.3));
     TEST_ASSERT_DOUBLE_WITHIN(1.5e-3, law_facts(FILTER_KIND_synth_opt).envelope.gain_sum, straight_line_sum(2.0 / 3.0));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(gain_sums_are_as_stated);
-    return UNITY_END();
 }

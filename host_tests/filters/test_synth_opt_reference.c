@@ -1,18 +1,13 @@
 /* synth_opt against its double reference, and the reference against the values and limits of the notes. */
 #include "reference/synth_opt.h"
-#include "support/laws.h"
+#include "support/test_law.h"
 #include "synth.h"
-#include "unity.h"
 
 #include <math.h>
 
 #define PI 3.14159265358979323846
 #define STRETCH 0.9413
 enum { SEED = 7101, STEPS = 12 };
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static void equal_errors(double s[9], double p0)
 {
@@ -22,7 +17,7 @@ static void equal_errors(double s[9], double p0)
 }
 
 /* notes/synthesised-filter.md 1.1 and 2.1, to the digits printed there: P0 = 5, R = 1 and 0.5; three raw samples. */
-static void exact_schedule_begins_as_in_the_notes(void)
+TEST(exact_schedule_begins_as_in_the_notes)
 {
     static const double p0[3] = { 5.0, 10.0, 0.0 };
     static const double b0[3][6] = { { 0.83333, 0.83333, 0.78313, 0.72532, 0.69948, 0.68625 },
@@ -42,7 +37,7 @@ static void exact_schedule_begins_as_in_the_notes(void)
     }
 }
 
-static void u_schedule_begins_as_in_the_notes(void)
+TEST(u_schedule_begins_as_in_the_notes)
 {
     static const double expected[4][3] = { { -1.0 / 6, 32.5, 0.970149 },
                                            { -0.032338, 9.680014, 0.906367 },
@@ -61,7 +56,7 @@ static void u_schedule_begins_as_in_the_notes(void)
 }
 
 /* From 1000 positive-definite starts over six decades: a1 = 0, b0 = 2/3, P = 2/3 R. */
-static void exact_schedule_has_one_limit(void)
+TEST(exact_schedule_has_one_limit)
 {
     test_random_t random;
     random_seed(&random, SEED);
@@ -89,7 +84,7 @@ static void exact_schedule_has_one_limit(void)
 }
 
 /* U: a1 = -1/6, b0 = P / R = 11/13 from flat starts over ten decades, and from 0, which the clamp of b0 leaves. */
-static void u_schedule_has_its_limit(void)
+TEST(u_schedule_has_its_limit)
 {
     for (int decade = -6; decade <= 4; decade++) {
         double p0 = decade == -6 ? 0.0 : pow(10.0, decade);
@@ -105,10 +100,10 @@ static void u_schedule_has_its_limit(void)
 }
 
 /* P0 = ratio R, with R = 4 LSB^2. */
-static void make(filter_t *f, bool u, double ratio)
+static filter_t made_opt(bool u, double ratio)
 {
     filter_config_t config = { 1000, { u, (int32_t)lround(1024.0 * ratio), 1024, RATE_UNLIMITED_LSB_S } };
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_synth_opt, &config));
+    return made(&filter_law_synth_opt, &config);
 }
 
 /* Gains of the steps of class i: its own first four, then those of 16, then the limit; a1 found by a bend of 3000. */
@@ -135,22 +130,18 @@ static void assert_step(filter_t *f, const reference_gains_t *expected)
     bent.own.synth.rate_before_lsb_q16 = 0;
     double extrapolated = coast(&bent) / 65536.0;
     TEST_ASSERT_DOUBLE_WITHIN(1000.0 / 131072.0 + 1e-4, 2000.0 - 1000.0 * expected->a1, extrapolated);
-    filter_probe_t probe;
     (void)filter_update(f, 10);
-    filter_probe(f, &probe);
+    filter_probe_t probe = probe_of(f);
     TEST_ASSERT_DOUBLE_WITHIN(0.6, fmin(expected->b0 * 65536.0, 65535.0), probe.gain_uq16);
 }
 
-static void table_is_the_schedule_of_the_reference(void)
+TEST(table_is_the_schedule_of_the_reference)
 {
     for (int u = 0; u <= 1; u++) {
         for (int i = 0; i < 6; i++) {
-            filter_t f;
             double ratio = pow(4.0, i);
-            make(&f, u != 0, ratio);
-            for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-                (void)filter_update(&f, 10);
-            }
+            filter_t f = made_opt(u != 0, ratio);
+            feed(&f, 10, FILTER_WARM_UP_SAMPLES);
             for (int step = 0; step < STEPS + 5; step++) {
                 reference_gains_t expected = expected_gains(u != 0, ratio, step);
                 assert_step(&f, &expected);
@@ -163,7 +154,7 @@ static void table_is_the_schedule_of_the_reference(void)
  * The variance that the filter's own gains leave, over what the schedule made for the very P0 / R leaves: at most
  * 1.15 in any sample and 1.023 in the mean of the 16 of the start, for P0 / R from 1/2 to 100,000.
  */
-static void nearest_class_costs_little(void)
+TEST(nearest_class_costs_little)
 {
     double worst = 1.0;
     double worst_mean = 1.0;
@@ -176,13 +167,10 @@ static void nearest_class_costs_little(void)
         TEST_ASSERT_TRUE(ratio > 99999.0 || (filter_init(&f, &filter_law_synth_opt, &config) == FILTER_ACCEPTED));
         equal_errors(best, ratio);
         equal_errors(own, ratio);
-        for (int k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
-            (void)filter_update(&f, 10);
-        }
+        feed(&f, 10, FILTER_WARM_UP_SAMPLES);
         for (int step = 0; step < 16; step++) {
-            filter_probe_t probe;
             (void)filter_update(&f, 10);
-            filter_probe(&f, &probe);
+            filter_probe_t probe = probe_of(&f);
             double optimum = reference_opt_exact_step(best).p;
             double variance = reference_given_step(own, 0.0, probe.gain_uq16 / 65536.0);
             worst = fmax(worst, variance / optimum);
@@ -207,7 +195,7 @@ static double switching_bound(void)
     return reference_norm_loss() / (1.0 - STRETCH);
 }
 
-static void clamps_are_safe_for_any_switching(void)
+TEST(clamps_are_safe_for_any_switching)
 {
     TEST_ASSERT_TRUE(reference_stretch(0.0, 0.5) > 0.5);
     for (int i = 0; i <= 20; i++) {
@@ -238,7 +226,7 @@ static double uniform(test_random_t *random)
  * 10^5 steps of random gains within the clamps, every other one at a corner, held for 1 to 8 steps; a disturbance of
  * +-1, its sign random or that of the error.
  */
-static void random_switching_stays_below_the_bound(void)
+TEST(random_switching_stays_below_the_bound)
 {
     static const double corners[3][2] = { { 0.0, 1.0 }, { 0.0, 0.5 }, { -1.0 / 3.0, 0.5 } };
     test_random_t random;
@@ -267,13 +255,12 @@ static void random_switching_stays_below_the_bound(void)
  * The library's step with gains at random: samples of +-150 LSB and nothing but rounding between it and the double
  * filter: |difference| < 25 x 1.5 x 2^-17 LSB at every one of 10^5 steps, and the estimate below 25 x 150 LSB.
  */
-static void fixed_point_switches_as_the_reference(void)
+TEST(fixed_point_switches_as_the_reference)
 {
     test_random_t random;
     random_seed(&random, SEED + 2);
-    filter_t f;
     double x[3] = { 0.0, 0.0, 0.0 };
-    make(&f, true, 1.0);
+    filter_t f = made_opt(true, 1.0);
     filter_reset(&f, 0);
     for (long k = 0; k < 100000; k++) {
         uint16_t a1_uq16 = (uint16_t)(21845.0 * uniform(&random));
@@ -290,14 +277,13 @@ static void fixed_point_switches_as_the_reference(void)
 /* --- the whole filter --- */
 
 /* |x - reference| below 25 x 1.5 roundings of 2^-17 LSB, from the start on: the start's median is exact. */
-static void estimate_equals_the_reference(void)
+TEST(estimate_equals_the_reference)
 {
     test_random_t random;
     random_seed(&random, SEED + 3);
     for (int i = 0; i < 12; i++) {
-        filter_t f;
         bool u = i % 2 != 0;
-        make(&f, u, pow(4.0, i / 2));
+        filter_t f = made_opt(u, pow(4.0, i / 2));
         double x[3] = { 0.0, 0.0, 0.0 };
         for (int k = 0; k < 5000; k++) {
             int16_t z = as_sample(900.0 * sin(0.01 * k) + 2.0 * random_normal(&random));
@@ -326,7 +312,7 @@ static double profile(int which, double t)
 }
 
 /* Row (0, 2/3) of that section, exact there, from a constant start: 0..5, 6..10, 11..15 s; 4000 runs, R = 0.6. */
-static void roll_experiment_has_the_errors_of_the_notes(void)
+TEST(roll_experiment_has_the_errors_of_the_notes)
 {
     static const double expected[3][3] = { { 0.4026, 0.4023, 0.4000 },
                                            { 0.4026, 0.4041, 0.4000 },
@@ -338,8 +324,7 @@ static void roll_experiment_has_the_errors_of_the_notes(void)
     for (int which = 0; which < 3; which++) {
         double sums[3] = { 0.0, 0.0, 0.0 };
         for (int run = 0; run < 4000; run++) {
-            filter_t f;
-            make(&f, false, 4.0);
+            filter_t f = made_opt(false, 4.0);
             for (int k = 0; k <= 150; k++) {
                 double truth = 100.0 * (profile(which, 0.1 * k) - 30.0);
                 int16_t z = as_sample(truth + 100.0 * sqrt(0.6) * random_normal(&random));
@@ -360,14 +345,12 @@ static void roll_experiment_has_the_errors_of_the_notes(void)
 }
 
 /* Variance that the probe tells in the limit against that of 200,000 samples: 2/3 R and, of U, 0.8059 R. */
-static void probe_reports_the_true_variance(void)
+TEST(probe_reports_the_true_variance)
 {
     test_random_t random;
     random_seed(&random, SEED + 5);
     for (int u = 0; u <= 1; u++) {
-        filter_t f;
-        filter_probe_t probe;
-        make(&f, u != 0, 4.0);
+        filter_t f = made_opt(u != 0, 4.0);
         filter_set_noise(&f, 25600);
         filter_reset(&f, 0);
         double squares = 0.0;
@@ -375,25 +358,7 @@ static void probe_reports_the_true_variance(void)
             double x = filter_update(&f, as_sample(10.0 * random_normal(&random))) / 65536.0;
             squares += x * x / 200000.0;
         }
-        filter_probe(&f, &probe);
+        filter_probe_t probe = probe_of(&f);
         TEST_ASSERT_DOUBLE_WITHIN(0.02 * squares, squares, probe.p_lsb2_q8 / 256.0);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(exact_schedule_begins_as_in_the_notes);
-    RUN_TEST(u_schedule_begins_as_in_the_notes);
-    RUN_TEST(exact_schedule_has_one_limit);
-    RUN_TEST(u_schedule_has_its_limit);
-    RUN_TEST(table_is_the_schedule_of_the_reference);
-    RUN_TEST(nearest_class_costs_little);
-    RUN_TEST(clamps_are_safe_for_any_switching);
-    RUN_TEST(random_switching_stays_below_the_bound);
-    RUN_TEST(fixed_point_switches_as_the_reference);
-    RUN_TEST(estimate_equals_the_reference);
-    RUN_TEST(roll_experiment_has_the_errors_of_the_notes);
-    RUN_TEST(probe_reports_the_true_variance);
-    return UNITY_END();
 }

@@ -1,10 +1,5 @@
 /* synth_plus: its taps, its region and its start on integers; runs on the PC and on the chip. */
-#include "support/laws.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test_law.h"
 
 static filter_config_t with(uint16_t k, uint16_t b0_uq16, int32_t b1_q16, int32_t b2_q16)
 {
@@ -17,11 +12,12 @@ static filter_config_t with(uint16_t k, uint16_t b0_uq16, int32_t b1_q16, int32_
     return config;
 }
 
-static void make(filter_t *f, uint16_t k, uint16_t b0_uq16, int32_t b1_q16, int32_t b2_q16)
+static filter_t made_plus(uint16_t k, uint16_t b0_uq16, int32_t b1_q16, int32_t b2_q16)
 {
     filter_config_t config = with(k, b0_uq16, b1_q16, b2_q16);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_synth_plus, &config));
-    filter_reset(f, 0);
+    filter_t f = made(&filter_law_synth_plus, &config);
+    filter_reset(&f, 0);
+    return f;
 }
 
 /*
@@ -33,18 +29,16 @@ static void make(filter_t *f, uint16_t k, uint16_t b0_uq16, int32_t b1_q16, int3
  * and a missing sample: -30 - 360 + 3/4 (-15 - 720 + 576) - 7.5 - 90 = -606.75, then u is 0 in its place
  *   -1213.5 + 15 + 3/4 (-606.75 + 30 + 360) + 3.75 = -1357.3125
  */
-static void answers_are_those_of_the_equation(void)
+TEST(answers_are_those_of_the_equation)
 {
     static const int32_t expected_lsb_q4[] = { 512 * 16, 576 * 16, 360 * 16, -15 * 16, -9708, -21717 };
-    filter_t f;
-    make(&f, 2, 32768, -16384, 8192);
+    filter_t f = made_plus(2, 32768, -16384, 8192);
     for (uint8_t i = 0; i < 6; i++) {
         int32_t x = (i < 4) ? filter_update(&f, (i == 0) ? 1024 : 0) : coast(&f);
         TEST_ASSERT_EQUAL_INT32(expected_lsb_q4[i] * 4096, x);
     }
     TEST_ASSERT_EQUAL_UINT8(FILTER_COASTED, f.flags);
-    filter_probe_t probe;
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_INT32(0, probe.innovation_lsb_q16);
     TEST_ASSERT_EQUAL_UINT16(0, probe.gain_uq16);
 }
@@ -52,7 +46,7 @@ static void answers_are_those_of_the_equation(void)
 /*
  * rho = 1 goes on with the second difference of 10: 0, 10, 30 give 60. With rho = 1 - 2^-7 less 10 / 128 = 5120/65536.
  */
-static void rho_is_a_shift(void)
+TEST(rho_is_a_shift)
 {
     static const struct {
         uint16_t k;
@@ -60,8 +54,7 @@ static void rho_is_a_shift(void)
     } cases[] = { { 8, 0 }, { 7, 5120 }, { 1, 5 * 65536L }, { 0, 10 * 65536L } };
     for (uint8_t i = 0; i < 4; i++) {
         for (int8_t sign = -1; sign <= 1; sign = (int8_t)(sign + 2)) {
-            filter_t f;
-            make(&f, cases[i].k, 45000, -30000, 0);
+            filter_t f = made_plus(cases[i].k, 45000, -30000, 0);
             f.x_lsb_q16 = sign * 10L * 65536;
             f.rate_lsb = f.x_lsb_q16;
             f.own.synth.memory_lsb_q16 = sign * 10L * 65536;
@@ -77,7 +70,7 @@ static void rho_is_a_shift(void)
  * b2 < 1/4. What is beyond 16 bits decides with rho = 1 - 2^-7 and b1 = 1 count: b2 < 255.504 counts, and with b0 =
  * 1 - 2^-16 and rho = 1: b2 < 65533.00003 counts.
  */
-static void border_of_the_region_is_outside(void)
+TEST(border_of_the_region_is_outside)
 {
     static const struct {
         uint16_t k, b0_uq16;
@@ -103,10 +96,9 @@ static void border_of_the_region_is_outside(void)
 }
 
 /* After a reset there is no innovation to remember, whatever came before. */
-static void reset_forgets_the_innovations(void)
+TEST(reset_forgets_the_innovations)
 {
-    filter_t f;
-    make(&f, 2, 32768, -16384, 8192);
+    filter_t f = made_plus(2, 32768, -16384, 8192);
     for (uint8_t k = 0; k < 7; k++) {
         (void)filter_update(&f, (int16_t)(100 * k * k));
     }
@@ -117,16 +109,14 @@ static void reset_forgets_the_innovations(void)
 }
 
 /* With b1 = b2 = 0 it is synth with that a1, bit for bit. */
-static void without_memory_it_is_synth(void)
+TEST(without_memory_it_is_synth)
 {
-    filter_t f;
-    filter_t plain;
     filter_config_t config;
     uint32_t random = 4711;
-    make(&f, 0, 19661, 0, 0);
+    filter_t f = made_plus(0, 19661, 0, 0);
     config = filter_defaults(&filter_law_synth, 1000);
     config.value[SYNTH_RATE_MAX_LSB_S] = RATE_UNLIMITED_LSB_S;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&plain, &filter_law_synth, &config));
+    filter_t plain = made(&filter_law_synth, &config);
     filter_reset(&plain, 0);
     for (uint16_t k = 0; k < 300; k++) {
         int16_t z = (int16_t)random32_below(&random, 1000);
@@ -139,11 +129,9 @@ static void without_memory_it_is_synth(void)
  * median, so (3 - k) s off: its end lags by the sum of (6 k - 2 n - 2) (3 - k) s / (n (n + 1)) = 60 s / (n (n + 1)).
  * What is left where the own gains take over dies away with the poles: nothing of it at sample 150.
  */
-static void start_on_a_ramp_finds_its_slope(void)
+TEST(start_on_a_ramp_finds_its_slope)
 {
-    filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_synth_plus, 1000);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
+    filter_t f = made_default(&filter_law_synth_plus, 1000);
     for (int16_t n = 1; n <= 200; n++) {
         int32_t off = filter_update(&f, (int16_t)(3 * n)) - (int32_t)3 * n * 65536;
         if (n == FILTER_WARM_UP_SAMPLES + 1) {
@@ -155,33 +143,26 @@ static void start_on_a_ramp_finds_its_slope(void)
 }
 
 /* The gains of the start are those of the line, the own from where they are larger, or from sample 32 on. */
-static void start_ends_with_sample_31(void)
+TEST(start_ends_with_sample_31)
 {
     filter_config_t config = with(0, 2000, -1900, 0);
-    filter_t f;
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
-    for (uint8_t n = 1; n <= 31; n++) {
-        (void)filter_update(&f, 7);
-    }
+    filter_t f = made(&filter_law_synth_plus, &config);
+    feed(&f, 7, 31);
     TEST_ASSERT_EQUAL_UINT16(8060, f.gain_uq16); /* 122 / 992 */
     (void)filter_update(&f, 7);
     TEST_ASSERT_EQUAL_UINT16(2000, f.gain_uq16);
     config = with(0, 32768, -16384, 0);
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
-    for (uint8_t n = 1; n <= 6; n++) {
-        (void)filter_update(&f, 7);
-    }
+    feed(&f, 7, 6);
     TEST_ASSERT_EQUAL_UINT16(34328, f.gain_uq16); /* 22 / 42 */
     (void)filter_update(&f, 7);
     TEST_ASSERT_EQUAL_UINT16(32768, f.gain_uq16);
 }
 
 /* An outlier among the first five changes nothing: the start is their median. */
-static void outlier_in_the_start_costs_nothing(void)
+TEST(outlier_in_the_start_costs_nothing)
 {
-    filter_t f;
-    filter_config_t config = filter_defaults(&filter_law_synth_plus, 1000);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
+    filter_t f = made_default(&filter_law_synth_plus, 1000);
     for (uint8_t k = 0; k < FILTER_WARM_UP_SAMPLES; k++) {
         (void)filter_update(&f, (k == 4) ? 4000 : 0);
     }
@@ -190,14 +171,12 @@ static void outlier_in_the_start_costs_nothing(void)
 }
 
 /* R = 3 LSB^2: alpha-beta of 1/2 and 1/4 has (1/2 + 1/8) / (1/2 x 2.75) = 5/11. A sample's in the start. */
-static void probe_reports_the_variance(void)
+TEST(probe_reports_the_variance)
 {
-    filter_probe_t probe;
-    filter_t f;
     filter_config_t config = with(0, 32768, -16384, 0);
-    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
+    filter_t f = made(&filter_law_synth_plus, &config);
     (void)filter_update(&f, 5);
-    filter_probe(&f, &probe);
+    filter_probe_t probe = probe_of(&f);
     TEST_ASSERT_EQUAL_UINT32(768, probe.p_lsb2_q8);
     filter_reset(&f, 5);
     filter_probe(&f, &probe);
@@ -208,11 +187,10 @@ static void probe_reports_the_variance(void)
 }
 
 /* What leaves the format is cut off and flagged, whatever the taps. */
-static void overshoot_beyond_the_format_is_flagged(void)
+TEST(overshoot_beyond_the_format_is_flagged)
 {
-    filter_t f;
     uint8_t flags = 0;
-    make(&f, 8, 28266, -48056, 20895);
+    filter_t f = made_plus(8, 28266, -48056, 20895);
     filter_reset(&f, -4096);
     for (uint8_t k = 0; k < 40; k++) {
         int32_t x = filter_update(&f, 4095);
@@ -220,20 +198,4 @@ static void overshoot_beyond_the_format_is_flagged(void)
         flags |= f.flags;
     }
     TEST_ASSERT_EQUAL_UINT8(FILTER_SATURATED, flags);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(answers_are_those_of_the_equation);
-    RUN_TEST(rho_is_a_shift);
-    RUN_TEST(border_of_the_region_is_outside);
-    RUN_TEST(reset_forgets_the_innovations);
-    RUN_TEST(without_memory_it_is_synth);
-    RUN_TEST(start_on_a_ramp_finds_its_slope);
-    RUN_TEST(start_ends_with_sample_31);
-    RUN_TEST(outlier_in_the_start_costs_nothing);
-    RUN_TEST(probe_reports_the_variance);
-    RUN_TEST(overshoot_beyond_the_format_is_flagged);
-    return UNITY_END();
 }

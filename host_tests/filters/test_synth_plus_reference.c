@@ -1,16 +1,11 @@
 /* synth_plus against its double reference, and the reference against what the filter is said to contain. */
 #include "reference/synth_plus.h"
-#include "support/filters.h"
+#include "support/test_law.h"
 #include "synth.h"
-#include "unity.h"
 
 #include <math.h>
 
 #define SEED 7201
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static double wave(int k, test_random_t *random)
 {
@@ -18,7 +13,7 @@ static double wave(int k, test_random_t *random)
 }
 
 /* a1 = 0, b0 = alpha, b1 = beta - alpha: 1e-13 of a signal of 800. */
-static void contains_alpha_beta(void)
+TEST(contains_alpha_beta)
 {
     static const double gains[4][2] = { { 0.5, 0.1 }, { 0.2887, 0.0487 }, { 0.9, 0.9 }, { 0.05, 0.0013 } };
     test_random_t random;
@@ -39,7 +34,7 @@ static void contains_alpha_beta(void)
  * Taps of notes 5.3, to the digits printed there, from the Riccati recursion; the filters' answers equal to 1e-12; and
  * the relation b2 = rho (1 - b0) (b1 + (2 + rho) b0) of every such filter.
  */
-static void contains_the_steady_singer_filter(void)
+TEST(contains_the_steady_singer_filter)
 {
     static const struct {
         double rho, lambda, b[3];
@@ -85,7 +80,7 @@ static filter_config_t random_taps(uint32_t *state)
 }
 
 /* 20,000 coefficients at random: taken exactly when all poles are inside the unit circle, to the eigenvalues' 1e-6. */
-static void region_is_exactly_the_stable_one(void)
+TEST(region_is_exactly_the_stable_one)
 {
     uint32_t state = SEED;
     int taken = 0;
@@ -110,7 +105,7 @@ static void region_is_exactly_the_stable_one(void)
  * Singer filter with rho = 1 (three: trace 3 - k0 - k1 = 3 theta, minors 3 - 2 k0 - k1 + k2 = 3 theta^2, 1 - k0 =
  * theta^3). Rounding moves such poles by the root of its size.
  */
-static void poles_on_each_other_have_their_radius(void)
+TEST(poles_on_each_other_have_their_radius)
 {
     for (double theta = 0.3; theta < 0.9995; theta += 0.0333) {
         reference_taps_t two = { 0.0, 1.0 - theta * theta, 0.0, 0.0 };
@@ -125,7 +120,7 @@ static void poles_on_each_other_have_their_radius(void)
 }
 
 /* Closed form against the Lyapunov equation, relative error as synth_plus.c says. */
-static void noise_gain_is_that_of_the_reference(void)
+TEST(noise_gain_is_that_of_the_reference)
 {
     uint32_t state = SEED + 1;
     int compared = 0;
@@ -153,7 +148,7 @@ static void noise_gain_is_that_of_the_reference(void)
 }
 
 /* The defaults are the steady gains of kf at its defaults, within 0.1 % of alpha and 0.4 % of beta, 25 to 800 Hz. */
-static void defaults_are_steady_gains(void)
+TEST(defaults_are_steady_gains)
 {
     static const uint16_t rates_dhz[] = { 250, 500, 1000, 2000, 4000, 8000 };
     for (int i = 0; i < 6; i++) {
@@ -192,7 +187,7 @@ static filter_config_t config_of(int i)
 }
 
 /* From rest: |x - reference| within the rounding's worst case, at every one of 20,000 samples. */
-static void estimate_equals_the_reference(void)
+TEST(estimate_equals_the_reference)
 {
     test_random_t random;
     random_seed(&random, SEED + 2);
@@ -201,8 +196,7 @@ static void estimate_equals_the_reference(void)
         reference_taps_t taps = taps_of(&config);
         double bound = reference_plus_rounding_lsb(&taps, filters[i].roundings);
         reference_plus_t r = { { 0.0 }, { 0.0 } };
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
+        filter_t f = made(&filter_law_synth_plus, &config);
         filter_reset(&f, 0);
         for (int k = 0; k < 20000; k++) {
             int16_t z = as_sample(wave(k, &random));
@@ -217,19 +211,18 @@ static void estimate_equals_the_reference(void)
  * The start is the line of least squares through all samples so far, up to sample 31, the first five of which count as
  * their median: gains within 2^-17, so 0.02 LSB.
  */
-static void start_is_the_least_squares_line(void)
+TEST(start_is_the_least_squares_line)
 {
     test_random_t random;
     random_seed(&random, SEED + 3);
     for (int run = 0; run < 50; run++) {
         filter_config_t config;
-        filter_t f;
         double z[31];
         config = filter_defaults(&filter_law_synth_plus, 1000);
         config.value[SYNTH_PLUS_B0_UQ16] = 3277;
         config.value[SYNTH_PLUS_B1_Q16] = -3194;
         config.value[SYNTH_PLUS_K] = 2;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_synth_plus, &config));
+        filter_t f = made(&filter_law_synth_plus, &config);
         for (int k = 0; k < 31; k++) {
             int16_t sample = as_sample(100.0 + 5.0 * k + 2.0 * random_normal(&random));
             z[k] = sample;
@@ -265,7 +258,7 @@ static double with_nearest(double rho, double lambda)
     return least;
 }
 
-static void nearest_rho_costs_little(void)
+TEST(nearest_rho_costs_little)
 {
     double worst = 1.0;
     for (int i = 0; i < 8; i++) {
@@ -280,19 +273,4 @@ static void nearest_rho_costs_little(void)
     }
     printf("synth_plus: variance with the nearest rho at most %.4f of the optimum\n", worst);
     TEST_ASSERT_TRUE(worst < 1.005);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(contains_alpha_beta);
-    RUN_TEST(contains_the_steady_singer_filter);
-    RUN_TEST(poles_on_each_other_have_their_radius);
-    RUN_TEST(region_is_exactly_the_stable_one);
-    RUN_TEST(noise_gain_is_that_of_the_reference);
-    RUN_TEST(defaults_are_steady_gains);
-    RUN_TEST(estimate_equals_the_reference);
-    RUN_TEST(start_is_the_least_squares_line);
-    RUN_TEST(nearest_rho_costs_little);
-    return UNITY_END();
 }

@@ -1,14 +1,10 @@
 /* Closed forms of the constant synthesised filter and its region of stability, against sums and eigenvalues. */
 #include "reference/synth.h"
 #include "reference/synthesis.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* Table of the notes, section 1. */
 static const double table[][2] = { { -0.3, 0.1 },           { 0, 0.1 },  { 0, 0.3 }, { -0.3, 0.5 }, { 0, 2.0 / 3 },
@@ -16,7 +12,7 @@ static const double table[][2] = { { -0.3, 0.1 },           { 0, 0.1 },  { 0, 0.
 enum { ROWS = sizeof table / sizeof table[0] };
 
 /* Sums over the impulse response of the recursion (7); the extrapolation's is the sum over x_e, in which h0 is not. */
-static void closed_forms_are_sums_of_the_impulse_response(void)
+TEST(closed_forms_are_sums_of_the_impulse_response)
 {
     for (int i = 0; i < ROWS; i++) {
         double a1 = table[i][0];
@@ -41,7 +37,7 @@ static void closed_forms_are_sums_of_the_impulse_response(void)
 }
 
 /* The covariance recursion ends where the closed forms are. */
-static void covariance_recursion_has_the_closed_forms(void)
+TEST(covariance_recursion_has_the_closed_forms)
 {
     for (int i = 0; i < ROWS; i++) {
         double s[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
@@ -55,7 +51,7 @@ static void covariance_recursion_has_the_closed_forms(void)
 }
 
 /* 400 x 400 points each, midway between the borders' rational points; only what eigenvalues cannot tell is left out. */
-static void stability_is_exact_on_a_grid(void)
+TEST(stability_is_exact_on_a_grid)
 {
     enum { N = 400 };
     int stable[2] = { 0, 0 };
@@ -87,7 +83,7 @@ static void stability_is_exact_on_a_grid(void)
 }
 
 /* Noise is not amplified exactly where (1 - b0)(3 a1^2 - 2 a1) <= 1; inside the printed region it may double. */
-static void noise_is_amplified_inside_the_printed_region(void)
+TEST(noise_is_amplified_inside_the_printed_region)
 {
     double worst = 0.0;
     for (int i = 1; i < 400; i++) {
@@ -105,14 +101,4 @@ static void noise_is_amplified_inside_the_printed_region(void)
     }
     printf("largest noise gain in the printed region: %.3f\n", worst);
     TEST_ASSERT_DOUBLE_WITHIN(0.1, 2.2, worst);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(closed_forms_are_sums_of_the_impulse_response);
-    RUN_TEST(covariance_recursion_has_the_closed_forms);
-    RUN_TEST(stability_is_exact_on_a_grid);
-    RUN_TEST(noise_is_amplified_inside_the_printed_region);
-    return UNITY_END();
 }

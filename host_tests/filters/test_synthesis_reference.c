@@ -5,16 +5,12 @@
 #include "reference/synth.h"
 #include "reference/synthesis.h"
 #include "support/random.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
 
 #define SEED 5001
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 typedef struct {
     double a1, pe, b0;
@@ -41,7 +37,7 @@ static void assert_steps(reference_schedule_kind_t kind, double r, const double 
 }
 
 /* P(0) = 5 as in the paper and all P before it; (21) at flat P: a1 = -1/6, and (20) is then -13/12 P: negative. */
-static void printed_schedule_begins_outside_its_region(void)
+TEST(printed_schedule_begins_outside_its_region)
 {
     static const gains_t r1[] = {
         { -1.0 / 6, -65.0 / 12, 65.0 / 53 },
@@ -59,7 +55,7 @@ static void printed_schedule_begins_outside_its_region(void)
     }
 }
 
-static void mended_schedules_begin_as_derived(void)
+TEST(mended_schedules_begin_as_derived)
 {
     static const gains_t square[] = { { -0.5, 0, 0 }, { 0, -15, 15.0 / 14 }, { -36.0 / 11, 565.0 / 11, 565.0 / 576 } };
     static const double rising[5] = { 1, 2, 4, 7, 9 };
@@ -84,7 +80,7 @@ static void mended_schedules_begin_as_derived(void)
 }
 
 /* Each a1 is the stationary point of its own Pe, in which everything else is held. */
-static void a1_is_where_pe_is_stationary(void)
+TEST(a1_is_where_pe_is_stationary)
 {
     test_random_t random;
     random_seed(&random, SEED);
@@ -112,7 +108,7 @@ static void a1_is_where_pe_is_stationary(void)
     }
 }
 
-static void degenerate_starts_divide_by_zero(void)
+TEST(degenerate_starts_divide_by_zero)
 {
     static const double starts[3][5] = { { 5, 0, 0, 0, 0 }, { 5, 10, 20, 40, 80 }, { 5, 10, 15, 20, 25 } };
     static const int steps[3] = { 0, 0, 1 };
@@ -194,7 +190,7 @@ static failure_t failure(reference_schedule_kind_t kind, int before)
  * zero, and neighbouring starts part by e^0.17 a step. That is a transient: in the end every start falls into a cycle
  * of 16 (corrected expansion: of 4, a quarter of whose variances P are negative) with not one sample in the region.
  */
-static void printed_schedule_is_no_schedule(void)
+TEST(printed_schedule_is_no_schedule)
 {
     failure_t printed = failure(SCHEDULE_PRINTED, 0);
     TEST_ASSERT_DOUBLE_WITHIN(0.006, 0.026, printed.inside);
@@ -212,7 +208,7 @@ static void printed_schedule_is_no_schedule(void)
 }
 
 /* The twin: one that works falls into none of it. */
-static void uncorrelated_schedule_is_a_schedule(void)
+TEST(uncorrelated_schedule_is_a_schedule)
 {
     failure_t u = failure(SCHEDULE_UNCORRELATED, 50);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, u.inside);
@@ -221,7 +217,7 @@ static void uncorrelated_schedule_is_a_schedule(void)
 }
 
 /* With the square restored the schedule falls into a cycle of two, one step of which lies outside the region. */
-static void restored_square_ends_in_a_cycle_of_two(void)
+TEST(restored_square_ends_in_a_cycle_of_two)
 {
     reference_schedule_t f;
     double s[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
@@ -240,7 +236,7 @@ static void restored_square_ends_in_a_cycle_of_two(void)
 }
 
 /* U: flat P gives a1 = -1/6, Pe = 13/2 P, so 13/2 P + R = 13/2 R. Its own optimum: a1 = 2/3, held at 0, Pe = 5 P. */
-static void uncorrelated_schedules_have_their_limits(void)
+TEST(uncorrelated_schedules_have_their_limits)
 {
     static const gains_t limits[] = { { -1.0 / 6, 5.5, 11.0 / 13 }, { 0, 4, 4.0 / 5 } };
     static const double noise_gain[] = { 0.805937, 0.75 };
@@ -267,7 +263,7 @@ static void uncorrelated_schedules_have_their_limits(void)
 }
 
 /* From S = 5 everywhere (one common error) and from three raw samples; the first gains are exact fractions. */
-static void exact_covariance_leads_to_two_thirds(void)
+TEST(exact_covariance_leads_to_two_thirds)
 {
     static const double common[9] = { 5, 5, 5, 5, 5, 5, 5, 5, 5 };
     static const double raw[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
@@ -300,7 +296,7 @@ static void exact_covariance_leads_to_two_thirds(void)
 }
 
 /* Any positive definite start. */
-static void exact_covariance_forgets_its_start(void)
+TEST(exact_covariance_forgets_its_start)
 {
     test_random_t random;
     random_seed(&random, SEED + 3);
@@ -321,20 +317,4 @@ static void exact_covariance_forgets_its_start(void)
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.0 / 3, f.b0);
         TEST_ASSERT_EQUAL_DOUBLE(0.0, f.a1);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(printed_schedule_begins_outside_its_region);
-    RUN_TEST(mended_schedules_begin_as_derived);
-    RUN_TEST(a1_is_where_pe_is_stationary);
-    RUN_TEST(degenerate_starts_divide_by_zero);
-    RUN_TEST(printed_schedule_is_no_schedule);
-    RUN_TEST(uncorrelated_schedule_is_a_schedule);
-    RUN_TEST(restored_square_ends_in_a_cycle_of_two);
-    RUN_TEST(uncorrelated_schedules_have_their_limits);
-    RUN_TEST(exact_covariance_leads_to_two_thirds);
-    RUN_TEST(exact_covariance_forgets_its_start);
-    return UNITY_END();
 }

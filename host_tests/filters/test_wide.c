@@ -1,7 +1,7 @@
 /* The covariance of wide.h in integers, on the PC and on the chip: by hand, at both ends of its range. */
 #include "kalman.h"
 #include "support/laws.h"
-#include "unity.h"
+#include "support/test.h"
 
 #define ONE_UQ16 0x10000UL
 #define ONE_UQ24 0x1000000UL
@@ -39,9 +39,7 @@ void setUp(void)
     make(256, 10000);
 }
 
-void tearDown(void) {}
-
-static void begin_is_limited_to_the_formats(void)
+TEST(begin_is_limited_to_the_formats)
 {
     wide_from(&core, INT32_MAX, INT32_MIN, (filter_covariance_t){ UINT32_MAX, UINT32_MAX, UINT32_MAX });
     TEST_ASSERT_EQUAL_INT32((int32_t)FILTER_X_MAX_LSB * 65536, core.x_lsb_q16);
@@ -52,7 +50,7 @@ static void begin_is_limited_to_the_formats(void)
 }
 
 /* P = (1, 1/2; 1/2, 1/4): P12' = 3/4, P11' = 1 + 1/2 + 3/4, P22' = 1/4 + q22; x' = 10 + 3. */
-static void prediction_by_hand(void)
+TEST(prediction_by_hand)
 {
     wide_from(&core, 10 * 65536L, 3 * 65536L, (filter_covariance_t){ ONE_UQ16, ONE_UQ24 / 2, ONE_UQ28 / 4 });
     TEST_ASSERT_TRUE(filter_wide_predict(&core, 20));
@@ -84,7 +82,7 @@ static void assert_covariance(uint32_t p11_uq16, uint32_t p12_uq16, uint32_t p22
     TEST_ASSERT_UINT32_WITHIN(8UL << 12, p22_uq16 << 12, core.own.wide.p.p22);
 }
 
-static void kalman_update_by_hand(void)
+TEST(kalman_update_by_hand)
 {
     begin_by_hand();
     filter_wide_correct(&core, 0, 0);
@@ -95,7 +93,7 @@ static void kalman_update_by_hand(void)
 }
 
 /* loss 1/2 halves both steps; back 1/2 leaves half of what is taken away. */
-static void loss_and_back_by_hand(void)
+TEST(loss_and_back_by_hand)
 {
     begin_by_hand();
     filter_wide_correct(&core, 0x8000, 0x8000);
@@ -105,7 +103,7 @@ static void loss_and_back_by_hand(void)
 }
 
 /* back 1: P stays; 3: twice as much more as Kalman's update would take, from P22 = 3/4 and so in its growing range. */
-static void covariance_grows_by_hand(void)
+TEST(covariance_grows_by_hand)
 {
     begin_by_hand();
     filter_wide_correct(&core, 0xFFFF, ONE_UQ16);
@@ -117,7 +115,7 @@ static void covariance_grows_by_hand(void)
 }
 
 /* Above an eighth of the range it does not grow; below, by less than eight times. */
-static void growth_ends_in_range(void)
+TEST(growth_ends_in_range)
 {
     wide_from(&core, 0, 0, (filter_covariance_t){ WIDE_GROWTH_END, 0, 0 });
     TEST_ASSERT_TRUE(filter_wide_predict(&core, 100));
@@ -132,7 +130,7 @@ static void growth_ends_in_range(void)
 }
 
 /* P / R reaches 1,100 on the way to its end, whatever drives it, and then stays. */
-static void range_is_at_least_1100(void)
+TEST(range_is_at_least_1100)
 {
     static const int32_t q_lsb2_s3[] = { 1000, 10000, 100000, 1000000 };
     static const uint16_t steps[] = { 2500, 1200, 600, 400 };
@@ -153,7 +151,7 @@ static void range_is_at_least_1100(void)
 }
 
 /* A refused sample leaves prediction and P; where P cannot grow it is taken: S = 32769, x is 1/32769 from it. */
-static void refused_sample_is_taken_at_the_end_of_the_range(void)
+TEST(refused_sample_is_taken_at_the_end_of_the_range)
 {
     wide_from(&core, 0, 0, (filter_covariance_t){ 1000 * ONE_UQ16, 0, 0 });
     bool grows = filter_wide_predict(&core, 4000);
@@ -169,7 +167,7 @@ static void refused_sample_is_taken_at_the_end_of_the_range(void)
 }
 
 /* r^2 / R from the smallest innovation to the largest, any R: never beyond the format, never 0 for a large one. */
-static void distance_saturates(void)
+TEST(distance_saturates)
 {
     make(FILTER_R_MIN_LSB2_Q8, 10000);
     wide_from(&core, -4608 * 65536L, 0, (filter_covariance_t){ 0, 0, 0 });
@@ -185,7 +183,7 @@ static void distance_saturates(void)
 }
 
 /* Fast motion ends at both bounds. */
-static void states_saturate(void)
+TEST(states_saturate)
 {
     wide_from(&core, 4600 * 65536L, 4600 * 65536L, (filter_covariance_t){ ONE_UQ16, 0, 0 });
     (void)filter_wide_predict(&core, 0);
@@ -198,20 +196,4 @@ static void states_saturate(void)
     filter_wide_correct(&core, 0, 0);
     TEST_ASSERT_EQUAL_INT32((int32_t)FILTER_X_MAX_LSB * -65536, core.rate_lsb);
     TEST_ASSERT_EQUAL_UINT8(FILTER_SATURATED, core.flags);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(begin_is_limited_to_the_formats);
-    RUN_TEST(prediction_by_hand);
-    RUN_TEST(kalman_update_by_hand);
-    RUN_TEST(loss_and_back_by_hand);
-    RUN_TEST(covariance_grows_by_hand);
-    RUN_TEST(growth_ends_in_range);
-    RUN_TEST(range_is_at_least_1100);
-    RUN_TEST(refused_sample_is_taken_at_the_end_of_the_range);
-    RUN_TEST(distance_saturates);
-    RUN_TEST(states_saturate);
-    return UNITY_END();
 }

@@ -1,10 +1,8 @@
 /* sprf_paper, shrf, pbf and af against the matrices of paper 002 in double: steady gains, single steps, whole runs. */
 #include "reference/robust.h"
-#include "support/filters.h"
-#include "support/laws.h"
 #include "support/random.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -14,10 +12,6 @@
 #define R_LSB2 16.0
 
 enum { RUNS = 400, SAMPLES = 300, SCORED_FROM = 150 };
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* A law on the wide core and its reference: of the same name, the published one without its `_paper`. */
 typedef struct {
@@ -31,7 +25,7 @@ typedef struct {
 static pair_t pairs[FILTER_KIND_COUNT];
 static int pair_count;
 
-static void find_pairs(void)
+TEST(find_pairs)
 {
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         const filter_law_t *law = filter_listed((filter_kind_t)kind);
@@ -79,7 +73,7 @@ static void make(const pair_t *pair, filter_t *f, robust_reference_t *r)
 }
 
 /* At rest, over rates and R: 0.5 % where the gain is 0.027 and more; 0.7 % at the end of q22's range, gain 0.022. */
-static void steady_gains_are_kalmans(void)
+TEST(steady_gains_are_kalmans)
 {
     static const uint16_t rates[] = { 125, 250, 500, 1000, 2000, 4000, 8000, 16000, 40000 };
     static const double r_lsb2[] = { 0.0117, 0.1, 1.0, 10.0, 100.0, 1000.0 };
@@ -89,9 +83,7 @@ static void steady_gains_are_kalmans(void)
         filter_config_t config = filter_defaults(pairs[0].law, rates[i % 9]);
         config.value[KALMAN_R] = (int32_t)lrint(256.0 * r_lsb2[i / 9]);
         TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, pairs[0].law, &config));
-        for (int k = 0; k < 6000; k++) {
-            (void)filter_update(&f, 100);
-        }
+        feed(&f, 100, 6000);
         robust_reference_t r;
         double p[4];
         double gain[2];
@@ -108,7 +100,7 @@ static void steady_gains_are_kalmans(void)
 }
 
 /* q22 itself, from rate, q and R: five products of 16 significant bits. */
-static void process_noise_is_q_t3_over_r(void)
+TEST(process_noise_is_q_t3_over_r)
 {
     filter_t f;
     robust_reference_t r;
@@ -181,7 +173,7 @@ static agreement_t compare(const pair_t *pair, double stay, double outliers_stay
  * 2 %. sprf_paper decides by a threshold: one decision that falls differently can lock one of the two out, so only the
  * median run is judged.
  */
-static void runs_agree_with_double(void)
+TEST(runs_agree_with_double)
 {
     for (int i = 0; i < pair_count; i++) {
         agreement_t found = compare(&pairs[i], 0.0, 0.0);
@@ -194,7 +186,7 @@ static void runs_agree_with_double(void)
  * Equation (11): set to outliers in runs of mean length 5 a law agrees with double, and does better by a
  * twentieth.
  */
-static void a_chain_of_outliers_is_expected(void)
+TEST(a_chain_of_outliers_is_expected)
 {
     int laws = 0;
     for (int i = 0; i < pair_count; i++) {
@@ -215,7 +207,7 @@ static void a_chain_of_outliers_is_expected(void)
  * Equation (11) needs no sample: after an outlier the probability of a normal one goes back to clean, missing sample by
  * missing sample, as the chain of two states alone says.
  */
-static void the_chain_goes_on_over_missing_samples(void)
+TEST(the_chain_goes_on_over_missing_samples)
 {
     static const double stay = 0.8;
     int laws = 0;
@@ -224,9 +216,7 @@ static void the_chain_goes_on_over_missing_samples(void)
             filter_t f;
             robust_reference_t r;
             make_chain(&pairs[i], &f, &r, stay);
-            for (int k = 0; k < 50; k++) {
-                (void)filter_update(&f, 0);
-            }
+            feed(&f, 0, 50);
             (void)filter_update(&f, 400);
             double normal = f.own.mixture.normal_uq24 / 16777216.0;
             TEST_ASSERT_DOUBLE_WITHIN(0.001, 1.0 - stay, normal);
@@ -243,7 +233,7 @@ static void the_chain_goes_on_over_missing_samples(void)
 }
 
 /* After a step of n sigma, without outliers: p, gain and P11 follow the double filter through the whole recovery. */
-static void recovery_agrees_with_double(void)
+TEST(recovery_agrees_with_double)
 {
     static const int16_t steps_lsb[] = { 12, 20, 40, 80, 400 };
     for (int i = 1; i < pair_count; i++) {
@@ -264,17 +254,4 @@ static void recovery_agrees_with_double(void)
             TEST_ASSERT_LESS_OR_EQUAL_INT(pairs[i].returns_within, lag);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(find_pairs);
-    RUN_TEST(process_noise_is_q_t3_over_r);
-    RUN_TEST(steady_gains_are_kalmans);
-    RUN_TEST(runs_agree_with_double);
-    RUN_TEST(a_chain_of_outliers_is_expected);
-    RUN_TEST(the_chain_goes_on_over_missing_samples);
-    RUN_TEST(recovery_agrees_with_double);
-    return UNITY_END();
 }

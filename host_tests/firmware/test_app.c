@@ -1,15 +1,14 @@
 /* The whole firmware on the host's HAL: protocol, commands, faults, watchdog stages, baud and rate changes. */
 #include <stdio.h>
-#include <string.h>
 
 #include "app/app.h"
 #include "base/hang_test.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
-#include "support/board.h"
 #include "support/documented_limits.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/talk.h"
+#include "support/test.h"
 
 void setUp(void)
 {
@@ -32,7 +31,7 @@ static void assert_every_latched_sample_has_its_row(size_t allowed_pending)
     }
 }
 
-static void test_banner_then_header_then_rows(void)
+TEST(test_banner_then_header_then_rows)
 {
     board_start_resting();
     board_run_ms(1000);
@@ -48,17 +47,16 @@ static void test_banner_then_header_then_rows(void)
     TEST_ASSERT_INT_WITHIN(6, 98, (int)board.row_count);
 }
 
-static void test_first_five_rows_warm_up(void)
+TEST(test_first_five_rows_warm_up)
 {
-    board_start_resting();
-    board_run_ms(300);
+    talk_start();
     for (size_t i = 0; i < 10; i++) {
         TEST_ASSERT_EQUAL_UINT(i < LIMIT_WARM_ROWS ? ROW_WARMING_UP : 0, board.rows[i].flags & ROW_WARMING_UP);
     }
 }
 
 /* (31, -53, 248) LSB: 117, -200, 969 mg; roll atan2(-200, 969) = -11.66, pitch atan2(-117, 989) = -6.74 degrees. */
-static void test_values_of_a_resting_board(void)
+TEST(test_values_of_a_resting_board)
 {
     stream_t still = board_constant_stream(200, 100.0, 31, -53, 248);
     board_start(&still, 0.0, 0);
@@ -70,13 +68,11 @@ static void test_values_of_a_resting_board(void)
     TEST_ASSERT_INT_WITHIN(6, -1166, row->roll_cdeg);
     TEST_ASSERT_INT_WITHIN(6, -674, row->pitch_cdeg);
     TEST_ASSERT_EQUAL_UINT(ROW_STUCK, row->flags);
-    stream_free(&still);
 }
 
-static void test_clock_wrap_is_seamless(void)
+TEST(test_clock_wrap_is_seamless)
 {
-    static stream_t noisy;
-    noisy = board_noisy_stream(1000, 100.0, 1.5, 3u);
+    stream_t noisy = board_noisy_stream(1000, 100.0, 1.5, 3u);
     board_start(&noisy, 0.0, 0xFFFFFFFFu - 5000000u);
     board_run_ms(10000);
     for (size_t i = 1; i < board.row_count; i++) {
@@ -84,10 +80,9 @@ static void test_clock_wrap_is_seamless(void)
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & (ROW_COASTED | ROW_FAULT | ROW_DROPPED));
     }
     TEST_ASSERT_TRUE(board.row_count > 990);
-    stream_free(&noisy);
 }
 
-static void test_settings_show_and_set(void)
+TEST(test_settings_show_and_set)
 {
     static const struct {
         const char *typed, *answer;
@@ -105,18 +100,13 @@ static void test_settings_show_and_set(void)
                  { "baud", "# baud 115200" },
                  { "stop", "# stopped" },
                  { "go", "# going" } };
-    board_start_resting();
-    board_run_ms(200);
+    talk_start();
     for (size_t i = 0; i < sizeof talk / sizeof talk[0]; i++) {
-        size_t before = board.note_count;
-        board_type(talk[i].typed);
-        board_run_ms(150);
-        TEST_ASSERT_EQUAL_STRING(by_role(talk[i].answer), board.notes[before]);
-        TEST_ASSERT_EQUAL_size_t(before + 1, board.note_count);
+        TEST_ASSERT_EQUAL_STRING(by_role(talk[i].answer), talk_answer(talk[i].typed));
     }
 }
 
-static void test_refusals_name_the_legal_values(void)
+TEST(test_refusals_name_the_legal_values)
 {
     static const struct {
         const char *typed, *answer;
@@ -135,22 +125,16 @@ static void test_refusals_name_the_legal_values(void)
                  { "mode xml", "# refused 4: mode is one of csv plot" },
                  { "hello", "# refused 1: unknown command (type help)" },
                  { "stop now", "# refused 1: unknown command (type help)" } };
-    board_start_resting();
-    board_run_ms(200);
+    talk_start();
     for (size_t i = 0; i < sizeof talk / sizeof talk[0]; i++) {
-        size_t before = board.note_count;
-        board_type(talk[i].typed);
-        board_run_ms(100);
-        TEST_ASSERT_EQUAL_STRING(by_role(talk[i].answer), board.notes[before]);
-        TEST_ASSERT_EQUAL_size_t(before + 1, board.note_count);
+        TEST_ASSERT_EQUAL_STRING(by_role(talk[i].answer), talk_answer(talk[i].typed));
     }
     assert_every_latched_sample_has_its_row(1);
 }
 
-static void test_line_ends_and_blank_lines(void)
+TEST(test_line_ends_and_blank_lines)
 {
-    board_start_resting();
-    board_run_ms(200);
+    talk_start();
     size_t before = board.note_count;
     hal_host_type("every 2\revery 3\r\n\n\r\n  \nevery 4\n");
     board_run_ms(200);
@@ -159,28 +143,22 @@ static void test_line_ends_and_blank_lines(void)
     TEST_ASSERT_EQUAL_STRING("# every 4", board.notes[before + 2]);
 }
 
-static void test_garbage_and_long_lines_are_refused_whole(void)
+TEST(test_garbage_and_long_lines_are_refused_whole)
 {
-    board_start_resting();
-    board_run_ms(200);
-    size_t before = board.note_count;
-    board_type("rate 400 and then a great deal more than any command has");
-    board_run_ms(100);
+    talk_start();
+    size_t before = talk_typed("rate 400 and then a great deal more than any command has", 100);
     TEST_ASSERT_EQUAL_STRING("# refused 2: line too long", board.notes[before]);
-    board_type("ra\x01te 400");
-    board_run_ms(100);
+    (void)talk_typed("ra\x01te 400", 100);
     TEST_ASSERT_EQUAL_STRING("# refused 3: illegal characters", board.notes[before + 1]);
     TEST_ASSERT_EQUAL_UINT(1000, settings()->rate_dhz);
     assert_every_latched_sample_has_its_row(1);
-    board_type("status");
-    board_run_ms(300);
+    (void)talk_typed("status", 300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("lines refused 2", before));
 }
 
-static void test_flood_of_garbage_costs_no_row(void)
+TEST(test_flood_of_garbage_costs_no_row)
 {
-    board_start_resting();
-    board_run_ms(200);
+    talk_start();
     for (int i = 0; i < 60; i++) {
         hal_host_type("\x02\xFFzzzz help help help help help help help help help ~\x7F");
     }
@@ -189,22 +167,19 @@ static void test_flood_of_garbage_costs_no_row(void)
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
 }
 
-static void test_help_lists_every_command(void)
+TEST(test_help_lists_every_command)
 {
     static const char *const words[] = { "filter", "rate", "range", "every",  "baud",
                                          "mode",   "stop", "go",    "status", "help" };
-    board_start_resting();
-    board_run_ms(200);
-    size_t before = board.note_count;
-    board_type("help");
-    board_run_ms(500);
+    talk_start();
+    size_t before = talk_typed("help", 500);
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
         TEST_ASSERT_TRUE_MESSAGE(board_notes_with(words[i], before) > 0, words[i]);
     }
 }
 
 /* 1152 rows a second is what 115200 baud would carry of 10-byte rows; of 67-byte rows 171. */
-static void test_every_follows_what_the_line_carries(void)
+TEST(test_every_follows_what_the_line_carries)
 {
     TEST_ASSERT_EQUAL_UINT16(1, settings_smallest_every(115200, 1000));
     TEST_ASSERT_EQUAL_UINT16(2, settings_smallest_every(115200, 2000));
@@ -216,57 +191,46 @@ static void test_every_follows_what_the_line_carries(void)
     TEST_ASSERT_EQUAL_UINT16(60, settings_smallest_every(9600, 8000));
     TEST_ASSERT_EQUAL_UINT16(1, settings_smallest_every(1000u * LIMIT_ROW_BYTES, 1000)); /* ten bits a byte */
     TEST_ASSERT_EQUAL_UINT16(2, settings_smallest_every(1000u * LIMIT_ROW_BYTES - 1u, 1000));
-    board_start_resting();
-    board_run_ms(200);
-    size_t before = board.note_count;
-    board_type("rate 400");
-    board_run_ms(200);
+    talk_start();
+    size_t before = talk_typed("rate 400", 200);
     TEST_ASSERT_EQUAL_STRING("# every 3: the least for this baud rate", board.notes[before + 1]);
 }
 
-static void test_800_hz_says_its_bus_speed(void)
+TEST(test_800_hz_says_its_bus_speed)
 {
-    board_start_resting();
-    board_run_ms(200);
-    size_t before = board.note_count;
-    board_type("rate 800");
-    board_run_ms(200);
+    talk_start();
+    size_t before = talk_typed("rate 800", 200);
     TEST_ASSERT_EQUAL_STRING("# rate 800 Hz, I2C at 400 kHz", board.notes[before]);
 }
 
-static void test_baud_change_loses_nothing(void)
+TEST(test_baud_change_loses_nothing)
 {
-    board_start_resting();
-    board_run_ms(200);
-    board_type("baud 500000");
-    board_run_ms(500);
+    talk_start();
+    (void)talk_typed("baud 500000", 500);
     TEST_ASSERT_EQUAL_UINT32(500000, hal_host_baud());
     TEST_ASSERT_EQUAL_STRING("# baud 500000", board_last_note());
-    board_type("baud 9600");
-    board_run_ms(2000);
+    (void)talk_typed("baud 9600", 2000);
     TEST_ASSERT_EQUAL_UINT32(9600, hal_host_baud());
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
 }
 
-static void test_every_thins_rows_and_keeps_flags(void)
+TEST(test_every_thins_rows_and_keeps_flags)
 {
     stream_t still = board_constant_stream(1000, 100.0, 0, 0, 256);
     still.rows[104].lsb[2] = 4095;
     board_start(&still, 0.0, 0);
     board_run_ms(150);
-    board_type("every 10");
-    board_run_ms(3000);
+    (void)talk_typed("every 10", 3000);
     size_t clipped = 0;
     for (size_t i = 0; i < board.row_count; i++) {
         clipped += (board.rows[i].flags & ROW_CLIPPED) != 0;
     }
     TEST_ASSERT_EQUAL_size_t(1, clipped);
     TEST_ASSERT_INT_WITHIN(4, 12 + 30, (int)board.row_count);
-    stream_free(&still);
 }
 
 /* 9600 baud carries a short row in 40 ms; `every` forced, it fits, so fill the ring by hand: the line stands still. */
-static void test_rows_without_room_are_dropped_whole_and_told(void)
+TEST(test_rows_without_room_are_dropped_whole_and_told)
 {
     board_start_resting();
     board_run_ms(500);
@@ -285,20 +249,16 @@ static void test_rows_without_room_are_dropped_whole_and_told(void)
         uint32_t step_us = board.rows[i].t_us - board.rows[i - 1].t_us;
         missing += (step_us + 5000u) / 10000u - 1u;
     }
-    size_t before = board.note_count;
-    board_type("status");
-    board_run_ms(300);
+    size_t before = talk_typed("status", 300);
     char told[32];
     snprintf(told, sizeof told, "dropped %u,", (unsigned)missing);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(told, before));
 }
 
-static void test_plot_mode_is_labels_only(void)
+TEST(test_plot_mode_is_labels_only)
 {
-    board_start_resting();
-    board_run_ms(200);
-    board_type("mode plot");
-    board_run_ms(300);
+    talk_start();
+    (void)talk_typed("mode plot", 300);
     size_t plot_rows = 0;
     for (size_t i = 0; i < board.note_count; i++) {
         float raw_roll, roll, raw_pitch, pitch;
@@ -311,8 +271,7 @@ static void test_plot_mode_is_labels_only(void)
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("#", before));
-    board_type("mode csv");
-    board_run_ms(300);
+    (void)talk_typed("mode csv", 300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("t_us,x_lsb", before));
 }
 
@@ -323,8 +282,7 @@ static void test_plot_mode_is_labels_only(void)
 static void change_and_check(const char *command)
 {
     size_t rows_before = board.row_count;
-    board_type(command);
-    board_run_ms(120);
+    (void)talk_typed(command, 120);
     size_t warm = 0;
     for (size_t i = rows_before; i < board.row_count; i++) {
         warm += (board.rows[i].flags & ROW_WARMING_UP) != 0;
@@ -333,20 +291,17 @@ static void change_and_check(const char *command)
     TEST_ASSERT_EQUAL_size_t(5, warm);
 }
 
-static void test_changes_at_every_phase_lose_nothing(void)
+TEST(test_changes_at_every_phase_lose_nothing)
 {
     static const char *const commands[] = { "filter {plain}", "rate 200", "filter {robust}",
                                             "rate 100",       "range 4",  "range 16" };
-    board_start_resting();
-    board_run_ms(300);
-    board_type("baud 500000");
-    board_run_ms(100);
+    talk_start();
+    (void)talk_typed("baud 500000", 100);
     for (unsigned i = 0; i < 120; i++) {
         board_run_ms(10.0 + (double)i * 0.117);
         change_and_check(commands[i % 6]);
     }
-    board_type("stop");
-    board_run_ms(100);
+    (void)talk_typed("stop", 100);
     assert_every_latched_sample_has_its_row(0);
     for (size_t i = 1; i < board.row_count; i++) {
         TEST_ASSERT_TRUE((int32_t)(board.rows[i].t_us - board.rows[i - 1].t_us) > 0);
@@ -354,95 +309,57 @@ static void test_changes_at_every_phase_lose_nothing(void)
 }
 
 /* A byte lost to a framing error or a full ring makes its line garbage: "every 1000" must not become "every 100". */
-static void test_a_line_with_a_lost_byte_is_refused(void)
+TEST(test_a_line_with_a_lost_byte_is_refused)
 {
-    board_start_resting();
-    board_run_ms(200);
+    talk_start();
     hal_host_faults.corrupt_rx_every = 9;
-    board_type("every 1000");
-    board_run_ms(100);
+    (void)talk_typed("every 1000", 100);
     hal_host_faults.corrupt_rx_every = 0;
     TEST_ASSERT_EQUAL_UINT(1, settings()->every);
     TEST_ASSERT_EQUAL_STRING("# refused 3: illegal characters", board_last_note());
 }
 
 /* The slowest line with the widest plot rows still answers and still obeys. */
-static void test_plot_mode_on_a_slow_line_answers(void)
+TEST(test_plot_mode_on_a_slow_line_answers)
 {
     stream_t wide = board_constant_stream(1000, 100.0, 190, -95, -141);
     board_start(&wide, 0.0, 0);
     board_run_ms(300);
-    board_type("baud 9600");
-    board_run_ms(500);
-    board_type("mode plot");
-    board_run_ms(3000);
+    (void)talk_typed("baud 9600", 500);
+    (void)talk_typed("mode plot", 3000);
     for (int i = 0; i < 9; i++) {
         board_type("status");
     }
     board_run_ms(20000);
-    size_t before = board.note_count;
-    board_type("mode csv");
-    board_run_ms(90000);
+    size_t before = talk_typed("mode csv", 90000);
     TEST_ASSERT_EQUAL_UINT(MODE_CSV, settings()->mode);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("t_us,x_lsb", before));
-    stream_free(&wide);
 }
 
-static void test_stop_is_not_undone_by_a_change_that_follows(void)
+TEST(test_stop_is_not_undone_by_a_change_that_follows)
 {
     board_start_resting();
     board_run_ms(500);
     board_type("stop");
-    board_type("rate 50");
-    board_run_ms(500);
+    (void)talk_typed("rate 50", 500);
     size_t rows = board.row_count;
     board_run_ms(500);
     TEST_ASSERT_EQUAL_size_t(rows, board.row_count);
 }
 
 /* Readings alternate by +-6 LSB about 248: begun anew, a filter would put out the first of them, 23 mg off. */
-static void test_change_of_filter_goes_on_from_the_old_output(void)
+TEST(test_change_of_filter_goes_on_from_the_old_output)
 {
     stream_t alternating = board_constant_stream(1000, 100.0, 0, 0, 248);
     for (size_t i = 0; i < alternating.count; i++) {
         alternating.rows[i].lsb[2] = (int16_t)(248 + ((i & 1u) ? 6 : -6));
     }
     board_start(&alternating, 0.0, 0);
-    board_type("filter {plain}");
-    board_run_ms(3000);
+    (void)talk_typed("filter {plain}", 3000);
     size_t before = board.row_count;
-    board_type("filter {robust}");
-    board_run_ms(100);
+    (void)talk_typed("filter {robust}", 100);
     for (size_t i = before; i < board.row_count; i++) {
         TEST_ASSERT_INT_WITHIN(14, 969, board.rows[i].mg[2]);
     }
     TEST_ASSERT_TRUE(board.row_count > before + 5);
-    stream_free(&alternating);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_banner_then_header_then_rows);
-    RUN_TEST(test_first_five_rows_warm_up);
-    RUN_TEST(test_values_of_a_resting_board);
-    RUN_TEST(test_clock_wrap_is_seamless);
-    RUN_TEST(test_settings_show_and_set);
-    RUN_TEST(test_refusals_name_the_legal_values);
-    RUN_TEST(test_line_ends_and_blank_lines);
-    RUN_TEST(test_garbage_and_long_lines_are_refused_whole);
-    RUN_TEST(test_flood_of_garbage_costs_no_row);
-    RUN_TEST(test_help_lists_every_command);
-    RUN_TEST(test_every_follows_what_the_line_carries);
-    RUN_TEST(test_800_hz_says_its_bus_speed);
-    RUN_TEST(test_baud_change_loses_nothing);
-    RUN_TEST(test_every_thins_rows_and_keeps_flags);
-    RUN_TEST(test_rows_without_room_are_dropped_whole_and_told);
-    RUN_TEST(test_plot_mode_is_labels_only);
-    RUN_TEST(test_changes_at_every_phase_lose_nothing);
-    RUN_TEST(test_a_line_with_a_lost_byte_is_refused);
-    RUN_TEST(test_plot_mode_on_a_slow_line_answers);
-    RUN_TEST(test_stop_is_not_undone_by_a_change_that_follows);
-    RUN_TEST(test_change_of_filter_goes_on_from_the_old_output);
-    return UNITY_END();
 }

@@ -3,16 +3,15 @@
  * was asked for comes about. The sensor is looked for at both addresses, whoever else answers.
  */
 #include <stdio.h>
-#include <string.h>
 
 #include "adxl345.h"
 #include "adxl345_registers.h"
 #include "base/counters.h"
 #include "hal_i2c.h"
 #include "path/pipeline.h"
-#include "support/board.h"
 #include "support/random.h"
-#include "unity.h"
+#include "support/talk.h"
+#include "support/test.h"
 
 enum { NEIGHBOUR_ID = 0x42 };
 
@@ -23,22 +22,14 @@ static uint8_t on_rx(uint8_t reg, uint8_t byte)
     return neighbour != 0 && hal_host_sensor.address == neighbour && reg == ADXL345_DEVID ? NEIGHBOUR_ID : byte;
 }
 
-static stream_t stream;
-
 void setUp(void)
 {
     neighbour = 0;
 }
 
-void tearDown(void)
-{
-    stream_free(&stream);
-}
-
 static void start(void)
 {
-    stream_free(&stream);
-    stream = board_noisy_stream(3000, 100.0, 1.5, 3u);
+    stream_t stream = board_noisy_stream(3000, 100.0, 1.5, 3u);
     board_start_with_rx(&stream, on_rx);
     board_run_ms(1003);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
@@ -64,7 +55,7 @@ static const uint8_t statuses[] = { HAL_I2C_WRITE_ADDRESS_NACK, HAL_I2C_SENT_NAC
                                     HAL_I2C_ARBITRATION_LOST, HAL_I2C_BUS_ERROR };
 
 /* Standby, samples fetched, 21 accesses of configuration, the beginning: over a hundred bus events. */
-static void test_one_failed_access_in_a_change_of_rate_is_not_noticed(void)
+TEST(test_one_failed_access_in_a_change_of_rate_is_not_noticed)
 {
     static const char *const commands[] = { "rate 50", "rate 200" };
     static const double rates_hz[] = { 50.0, 200.0 };
@@ -83,7 +74,7 @@ static void test_one_failed_access_in_a_change_of_rate_is_not_noticed(void)
     TEST_ASSERT_TRUE(times > 300);
 }
 
-static void test_one_failed_access_in_a_stop_leaves_no_sensor_awake(void)
+TEST(test_one_failed_access_in_a_stop_leaves_no_sensor_awake)
 {
     unsigned times = 0;
     for (size_t s = 0; s < sizeof statuses; s++) {
@@ -97,13 +88,12 @@ static void test_one_failed_access_in_a_stop_leaves_no_sensor_awake(void)
 }
 
 /* A line is low while the sensor is put to rest for another rate: it is configured behind the fault, at that rate. */
-static void test_a_fault_in_a_change_of_rate_keeps_no_old_period(void)
+TEST(test_a_fault_in_a_change_of_rate_keeps_no_old_period)
 {
     for (unsigned phase = 0; phase < 20; phase++) {
         start();
         hal_host_faults.sda_low = true;
-        board_type("rate 50");
-        board_run_ms(10.0 + phase * 0.5);
+        (void)talk_typed("rate 50", 10.0 + phase * 0.5);
         hal_host_faults.sda_low = false;
         board_run_ms(500);
         size_t row = board.row_count;
@@ -119,7 +109,7 @@ static void test_a_fault_in_a_change_of_rate_keeps_no_old_period(void)
  * Contact lost, and back 1 ms after a stop at any moment of the search for the sensor (a blank takes 87 us), or with a
  * neighbour that answers all the while: the stop finds the sensor.
  */
-static void test_a_stop_behind_refused_transfers_finds_the_sensor(void)
+TEST(test_a_stop_behind_refused_transfers_finds_the_sensor)
 {
     for (int phase = 0; phase < 600; phase++) {
         char typed[320];
@@ -151,7 +141,7 @@ static void hold(unsigned line, bool low)
  * the sensor rests when it is free. A sample comes every 10 ms, tries for the bus 5 to 25 ms apart: each time the line
  * goes low, and the stop comes, at another moment of both.
  */
-static void test_a_stop_while_a_line_is_low_reaches_the_sensor_later(void)
+TEST(test_a_stop_while_a_line_is_low_reaches_the_sensor_later)
 {
     test_random_t chance;
     random_seed(&chance, 20261122u);
@@ -161,8 +151,7 @@ static void test_a_stop_while_a_line_is_low_reaches_the_sensor_later(void)
         hold(phase % 2, true);
         board_run_ms((phase < 200 ? 10.0 : 120.0) * random_uniform(&chance));
         size_t rows = board.row_count;
-        board_type("stop");
-        board_run_ms(200);
+        (void)talk_typed("stop", 200);
         TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
         TEST_ASSERT_TRUE(board.row_count <= rows + 2);
         rows = board.row_count;
@@ -174,12 +163,11 @@ static void test_a_stop_while_a_line_is_low_reaches_the_sensor_later(void)
 }
 
 /* A sensor without supply is asked to rest for a time, and then let be. */
-static void test_a_stop_that_nobody_answers_is_given_up(void)
+TEST(test_a_stop_that_nobody_answers_is_given_up)
 {
     start();
     adxl345_model_power(&hal_host_sensor, false);
-    board_type("stop");
-    board_run_ms(2500);
+    (void)talk_typed("stop", 2500);
     adxl345_counters_t before;
     adxl345_counters_t after;
     adxl345_counters(&before);
@@ -189,12 +177,12 @@ static void test_a_stop_that_nobody_answers_is_given_up(void)
 }
 
 /* Another device answers at one address; the sensor is at the other one, has lost contact, and is found again. */
-static void test_a_neighbour_at_the_other_address_does_not_keep_the_sensor_out(void)
+TEST(test_a_neighbour_at_the_other_address_does_not_keep_the_sensor_out)
 {
     static const uint8_t addresses[] = { ADXL345_ADDRESS_LOW, ADXL345_ADDRESS_HIGH };
     for (size_t i = 0; i < 2; i++) {
         neighbour = addresses[1 - i];
-        stream = board_noisy_stream(3000, 100.0, 1.5, 3u);
+        stream_t stream = board_noisy_stream(3000, 100.0, 1.5, 3u);
         board_start_with_rx(&stream, on_rx);
         hal_host_sensor.address = addresses[i];
         board_run_ms(500);
@@ -208,12 +196,11 @@ static void test_a_neighbour_at_the_other_address_does_not_keep_the_sensor_out(v
         board_run_ms(150);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
         TEST_ASSERT_EQUAL_HEX8(addresses[i], adxl345_address());
-        stream_free(&stream);
     }
 }
 
 /* Three bursts are refused and the sensor answers when it is looked for: configured anew, and nothing to tell. */
-static void test_three_refused_bursts_of_a_sensor_that_is_there(void)
+TEST(test_three_refused_bursts_of_a_sensor_that_is_there)
 {
     adxl345_counters_t before;
     adxl345_counters_t now;
@@ -238,7 +225,7 @@ static void test_three_refused_bursts_of_a_sensor_that_is_there(void)
 }
 
 /* Wires off: one line, with the words for a sensor that is gone. */
-static void test_no_sensor_is_told_when_neither_address_has_answered(void)
+TEST(test_no_sensor_is_told_when_neither_address_has_answered)
 {
     start();
     size_t before = board.note_count;
@@ -246,19 +233,4 @@ static void test_no_sensor_is_told_when_neither_address_has_answered(void)
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1: ", before));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault", before));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_one_failed_access_in_a_change_of_rate_is_not_noticed);
-    RUN_TEST(test_one_failed_access_in_a_stop_leaves_no_sensor_awake);
-    RUN_TEST(test_a_fault_in_a_change_of_rate_keeps_no_old_period);
-    RUN_TEST(test_a_stop_behind_refused_transfers_finds_the_sensor);
-    RUN_TEST(test_a_stop_while_a_line_is_low_reaches_the_sensor_later);
-    RUN_TEST(test_a_stop_that_nobody_answers_is_given_up);
-    RUN_TEST(test_a_neighbour_at_the_other_address_does_not_keep_the_sensor_out);
-    RUN_TEST(test_three_refused_bursts_of_a_sensor_that_is_there);
-    RUN_TEST(test_no_sensor_is_told_when_neither_address_has_answered);
-    return UNITY_END();
 }

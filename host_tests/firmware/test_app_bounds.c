@@ -15,19 +15,10 @@
 #include "settings/settings.h"
 #include "support/documented_limits.h"
 #include "support/talk.h"
-#include "unity.h"
-
-static stream_t stream;
-
-void setUp(void) {}
-
-void tearDown(void)
-{
-    stream_free(&stream);
-}
+#include "support/test.h"
 
 /* A line is of the characters from blank to `~`, 32 to 126; what ends it is no character of it. */
-static void test_every_other_byte_in_a_line_is_refused_as_such(void)
+TEST(test_every_other_byte_in_a_line_is_refused_as_such)
 {
     talk_start();
     for (int byte = 1; byte <= 255; byte++) {
@@ -42,7 +33,7 @@ static void test_every_other_byte_in_a_line_is_refused_as_such(void)
 }
 
 /* So many characters are a command, whose name is the first four; with one more they are a line too long. */
-static void test_a_line_has_so_many_characters_and_no_more(void)
+TEST(test_a_line_has_so_many_characters_and_no_more)
 {
     talk_start();
     for (int characters = LIMIT_LINE_MAX - 1; characters <= LIMIT_LINE_MAX + 1; characters++) {
@@ -57,7 +48,7 @@ static void test_a_line_has_so_many_characters_and_no_more(void)
 }
 
 /* The clock of microseconds wraps after 71.6 minutes: 72 are not reported as half a minute. */
-static void test_an_outage_longer_than_the_wrap_of_the_clock(void)
+TEST(test_an_outage_longer_than_the_wrap_of_the_clock)
 {
     talk_start();
     const double minutes_ms = 72.0 * 60e3;
@@ -96,7 +87,7 @@ static double reported_outage_ms(uint32_t seconds)
 }
 
 /* To the millisecond, then in whole seconds as they were counted; the way back takes less than 100 ms. */
-static void test_an_outage_from_a_minute_on_is_in_whole_seconds(void)
+TEST(test_an_outage_from_a_minute_on_is_in_whole_seconds)
 {
     double shorter_ms = reported_outage_ms(LIMIT_OUTAGE_S - 1);
     double since_ms = shorter_ms - 1e3 * (LIMIT_OUTAGE_S - 1) + 500.0; /* the last beginning of a second */
@@ -118,7 +109,7 @@ static bool lit_at(uint32_t t_us)
  * Passes that never have time for the service (4 ms apart) hold it up by 20 ms at most: what it shows is what was due
  * at some moment of the last 24 ms.
  */
-static void test_a_service_without_time_is_late_by_20_ms_at_most(void)
+TEST(test_a_service_without_time_is_late_by_20_ms_at_most)
 {
     enum { LATE_US = 24200 };
     talk_start();
@@ -149,7 +140,7 @@ static void test_a_service_without_time_is_late_by_20_ms_at_most(void)
  * The sensor goes: the row of the sample that is missing first is half a period and so long out after it was due, and
  * its bytes, 10 us each at 1,000,000 baud.
  */
-static void test_a_predicted_row_waits_for_a_sample_on_its_way(void)
+TEST(test_a_predicted_row_waits_for_a_sample_on_its_way)
 {
     talk_start();
     talk_type("baud 1000000");
@@ -178,7 +169,7 @@ static uint16_t rate_after_resets(int count, double run_ms)
     return settings()->rate_dhz;
 }
 
-static void test_the_third_reset_in_a_row_brings_safe_settings(void)
+TEST(test_the_third_reset_in_a_row_brings_safe_settings)
 {
     for (int resets = LIMIT_RESETS_TO_SAFE - 1; resets <= LIMIT_RESETS_TO_SAFE + 1; resets++) {
         TEST_ASSERT_EQUAL_UINT16(resets < LIMIT_RESETS_TO_SAFE ? 1000 : 125, rate_after_resets(resets, 400.0));
@@ -189,7 +180,7 @@ static void test_the_third_reset_in_a_row_brings_safe_settings(void)
  * What hangs so often, each time sooner than so long after its start, gets the lowest rate; a run of more than that was
  * a good one.
  */
-static void test_a_run_of_ten_seconds_counts_as_lasting(void)
+TEST(test_a_run_of_ten_seconds_counts_as_lasting)
 {
     TEST_ASSERT_EQUAL_UINT16(125, rate_after_resets(LIMIT_RESETS_TO_SAFE, 1e3 * LIMIT_SETTLED_S - 300.0));
     TEST_ASSERT_EQUAL_UINT16(1000, rate_after_resets(LIMIT_RESETS_TO_SAFE, 1e3 * LIMIT_SETTLED_S + 300.0));
@@ -198,7 +189,7 @@ static void test_a_run_of_ten_seconds_counts_as_lasting(void)
 /* x, y and z read the same on a carrier that lies across: all of it comes to one axis, reading x sqrt(3) / 200. */
 static int z_mg_of(int16_t lsb)
 {
-    stream = board_constant_stream(200, 100.0, lsb, lsb, lsb);
+    stream_t stream = board_constant_stream(200, 100.0, lsb, lsb, lsb);
     board_start(&stream, 0.0, 0);
     board_run_ms(300);
     talk_type("scale 200 200 200");
@@ -207,12 +198,11 @@ static int z_mg_of(int16_t lsb)
     board_run_ms(1000);
     const board_row_t *row = &board.rows[board.row_count - 1];
     TEST_ASSERT_EQUAL_INT(lsb, row->lsb[0]);
-    stream_free(&stream);
     return row->mg[2];
 }
 
 /* A row shows up to 32 g, which is 3,695 LSB there; what is more is shown as 32 g, to the rail of 4,095 LSB, 35.5 g. */
-static void test_a_row_shows_up_to_32_g(void)
+TEST(test_a_row_shows_up_to_32_g)
 {
     for (int lsb = 3600; lsb <= 4094; lsb += 19) {
         double exact_mg = fmin(32000.0, 1000.0 * lsb * 1.7320508 / 200.0);
@@ -225,9 +215,9 @@ static void test_a_row_shows_up_to_32_g(void)
  * Samples wait while the line drains for its new rate, and the sensor goes; then another range is asked for. There is
  * nothing to put to rest, but those samples are of the old range: 600 LSB is no rail of theirs.
  */
-static void test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range(void)
+TEST(test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range)
 {
-    stream = board_constant_stream(2000, 100.0, 600, 0, 248);
+    stream_t stream = board_constant_stream(2000, 100.0, 600, 0, 248);
     board_start(&stream, 0.0, 0);
     board_run_ms(300);
     talk_type("baud 9600");
@@ -242,8 +232,7 @@ static void test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range
     }
     size_t first = board.row_count;
     adxl345_model_power(&hal_host_sensor, false);
-    board_type("range 2");
-    board_run_ms(100);
+    (void)talk_typed("range 2", 100);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
     TEST_ASSERT_EQUAL_UINT8(4, adxl345_queued());
     board_run_ms(4000);
@@ -259,7 +248,7 @@ static void test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range
 /*
  * `every 50` counts from the header on, whatever was counted before a reset: the first row is that of the 50th sample.
  */
-static void test_the_first_row_after_a_header_is_a_whole_every_later(void)
+TEST(test_the_first_row_after_a_header_is_a_whole_every_later)
 {
     for (double before_ms = 200.0; before_ms <= 500.0; before_ms += 100.0) {
         talk_start();
@@ -279,21 +268,4 @@ static void test_the_first_row_after_a_header_is_a_whole_every_later(void)
         double after_ms = board.rows[rows].at_ms - board.note_ms[header];
         TEST_ASSERT_DOUBLE_WITHIN(30.0, 500.0, after_ms); /* three samples wait while the banner is printed */
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_every_other_byte_in_a_line_is_refused_as_such);
-    RUN_TEST(test_a_line_has_so_many_characters_and_no_more);
-    RUN_TEST(test_an_outage_longer_than_the_wrap_of_the_clock);
-    RUN_TEST(test_an_outage_from_a_minute_on_is_in_whole_seconds);
-    RUN_TEST(test_a_service_without_time_is_late_by_20_ms_at_most);
-    RUN_TEST(test_a_predicted_row_waits_for_a_sample_on_its_way);
-    RUN_TEST(test_the_third_reset_in_a_row_brings_safe_settings);
-    RUN_TEST(test_a_run_of_ten_seconds_counts_as_lasting);
-    RUN_TEST(test_a_row_shows_up_to_32_g);
-    RUN_TEST(test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range);
-    RUN_TEST(test_the_first_row_after_a_header_is_a_whole_every_later);
-    return UNITY_END();
 }

@@ -4,7 +4,6 @@
  */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/notices.h"
@@ -15,7 +14,7 @@
 #include "support/documented_limits.h"
 #include "support/random.h"
 #include "support/talk.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { HZ = 100, LIES_S = 6, TURNS_S = 1, LAY_ROWS = (LIES_S + TURNS_S) * HZ };
 
@@ -23,7 +22,6 @@ typedef struct {
     double g[3];
 } attitude_t;
 
-static stream_t stream;
 static test_random_t dice;
 
 static const attitude_t ups[] = { { { 1, 0, 0 } },  { { -1, 0, 0 } }, { { 0, 1, 0 } },
@@ -32,11 +30,6 @@ static const attitude_t ups[] = { { { 1, 0, 0 } },  { { -1, 0, 0 } }, { { 0, 1, 
 void setUp(void)
 {
     random_seed(&dice, 5);
-}
-
-void tearDown(void)
-{
-    stream_free(&stream);
 }
 
 /* One g in the direction of a, tilted: up to `degrees` off, by random shares across. */
@@ -56,7 +49,7 @@ static attitude_t tilted(attitude_t a, double degrees)
 /* Each of the attitudes for LIES_S, then turned to the next one for TURNS_S; noise of 1 LSB. */
 static void start_lays(const attitude_t *lays, size_t count, adxl345_part_t part)
 {
-    stream = board_constant_stream(count * LAY_ROWS, HZ, 0, 0, 0);
+    stream_t stream = board_constant_stream(count * LAY_ROWS, HZ, 0, 0, 0);
     for (size_t i = 0; i < stream.count; i++) {
         size_t lay = i / LAY_ROWS;
         size_t row = i % LAY_ROWS;
@@ -148,7 +141,7 @@ static double worst_tilt_deg(const adxl345_part_t *part, double *uncalibrated_de
  * Six positions in any order, up to 15 degrees off, some laid twice: 0.3 degree at 200 attitudes of each part. Each
  * position is told once, with how many are left; then offsets and scales.
  */
-static void test_cal6_of_any_part(void)
+TEST(test_cal6_of_any_part)
 {
     static const char *const orders[] = { "401523", "0123451", "5440213", "321054", "2244501133", "045321" };
     double worst = 0.0;
@@ -169,7 +162,6 @@ static void test_cal6_of_any_part(void)
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# scale ", note));
         TEST_ASSERT_EQUAL_size_t(0, board_notes_with("refused", note));
         worst = fmax(worst, worst_tilt_deg(&part, &uncalibrated));
-        stream_free(&stream);
     }
     printf("worst tilt: %.3f degree after cal6, %.2f before\n", worst, uncalibrated);
     TEST_ASSERT_TRUE(worst <= 0.3);
@@ -177,7 +169,7 @@ static void test_cal6_of_any_part(void)
 }
 
 /* The rows' mg columns are calibrated from then on, the lsb columns as read: 1 g in the position in which it ended. */
-static void test_rows_after_cal6(void)
+TEST(test_rows_after_cal6)
 {
     adxl345_part_t part = { { 1.1, 0.9, 1.05 }, { 40, -40, 25 }, { 0, 0, 0 } };
     start_order("012345", 0.0, part);
@@ -191,7 +183,7 @@ static void test_rows_after_cal6(void)
 }
 
 /* A position that was known: told once each time it is laid anew, and it counts once. */
-static void test_a_position_laid_again_is_refused(void)
+TEST(test_a_position_laid_again_is_refused)
 {
     start_order("4044", 5.0, adxl345_part_typical);
     size_t note = talk_typed("cal6", 27500.0);
@@ -202,7 +194,7 @@ static void test_a_position_laid_again_is_refused(void)
 }
 
 /* Held in between, 43 degrees off the axis that is nearest: no position, and no line until it lies straight. */
-static void test_an_oblique_rest_is_no_position(void)
+TEST(test_an_oblique_rest_is_no_position)
 {
     static const attitude_t lays[] = {
         { { 0, 0, 1 } }, { { 0.7314, 0, 0.682 } }, { { 0, 0.682, -0.7314 } }, { { 1, 0, 0 } }
@@ -215,7 +207,7 @@ static void test_an_oblique_rest_is_no_position(void)
 }
 
 /* Up to 40 degrees off it is a position, and is reported: 39, across either of the other axes, of an exact part. */
-static void test_a_rest_39_degrees_off_is_a_position(void)
+TEST(test_a_rest_39_degrees_off_is_a_position)
 {
     static const attitude_t lays[] = {
         { { 0, 0, 1 } }, { { 0.7771, 0, 0.6293 } }, { { 0, 0.6293, -0.7771 } }, { { 0, -0.7771, -0.6293 } }
@@ -229,7 +221,7 @@ static void test_a_rest_39_degrees_off_is_a_position(void)
 }
 
 /* To a sixteenth of an LSB, with the part across on either axis and of either sign. */
-static void test_seven_eighths_across_is_the_last_that_is_a_position(void)
+TEST(test_seven_eighths_across_is_the_last_that_is_a_position)
 {
     enum { ALONG = 4096, MOST = ALONG - ALONG / LIMIT_CAL6_EIGHTHS };
     for (int across = MOST - 1; across <= MOST + 1; across++) {
@@ -244,7 +236,7 @@ static void test_seven_eighths_across_is_the_last_that_is_a_position(void)
 }
 
 /* x or y is 35 degrees off in its position: refused by name, and nothing changes. */
-static void test_a_position_too_far_off_is_refused(void)
+TEST(test_a_position_too_far_off_is_refused)
 {
     attitude_t lays[6];
     memcpy(lays, ups, sizeof lays);
@@ -258,7 +250,7 @@ static void test_a_position_too_far_off_is_refused(void)
 }
 
 /* Beyond the legal numbers: refused with the axis. An offset of 90 LSB on y; a gain that makes z 340 LSB/g. */
-static void test_a_part_beyond_the_limits_is_refused(void)
+TEST(test_a_part_beyond_the_limits_is_refused)
 {
     static const struct {
         adxl345_part_t part;
@@ -271,12 +263,11 @@ static void test_a_part_beyond_the_limits_is_refused(void)
         size_t note = talk_typed("cal6", 41700.0);
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with(parts[i].told, note));
         TEST_ASSERT_EQUAL_MEMORY(&before, &settings()->calibration, sizeof before);
-        stream_free(&stream);
     }
 }
 
 /* `cal6 stop`: nothing is kept, and the next one begins with none of six. */
-static void test_cal6_stops(void)
+TEST(test_cal6_stops)
 {
     start_order("0444", 5.0, adxl345_part_typical);
     calibration_t before = settings()->calibration;
@@ -295,7 +286,7 @@ static void test_cal6_stops(void)
 }
 
 /* Another rate, or the sensor gone, ends it; nothing of it is left. */
-static void test_cal6_ends_with_the_sensor(void)
+TEST(test_cal6_ends_with_the_sensor)
 {
     start_order("0123", 5.0, adxl345_part_typical);
     calibration_t before = settings()->calibration;
@@ -313,7 +304,7 @@ static void test_cal6_ends_with_the_sensor(void)
  * Any mounting, upside down too: afterwards this attitude has roll and pitch 0. The rest's mean is good to 0.09 LSB an
  * axis, the filter's output in the row to about 1 LSB: 0.22 degree; 0.7 is three times that.
  */
-static void test_tare_levels_any_mounting(void)
+TEST(test_tare_levels_any_mounting)
 {
     for (int i = 0; i < 26; i++) {
         attitude_t lay = { { 0, 0, i == 0 ? -1 : 1 } };
@@ -329,12 +320,11 @@ static void test_tare_levels_any_mounting(void)
         const board_row_t *row = &board.rows[board.row_count - 1];
         TEST_ASSERT_INT_WITHIN(70, 0, row->roll_cdeg);
         TEST_ASSERT_INT_WITHIN(70, 0, row->pitch_cdeg);
-        stream_free(&stream);
     }
 }
 
 /* Turning through the rest, or 1.5 g: refused in words, and the mounting stays. */
-static void test_tare_of_what_is_no_rest_is_refused(void)
+TEST(test_tare_of_what_is_no_rest_is_refused)
 {
     static const attitude_t turning[] = { { { 0, 0, 1 } }, { { 0, 1, 0 } } };
     static const attitude_t pulled = { { 0, 0, 1.5 } };
@@ -344,7 +334,6 @@ static void test_tare_of_what_is_no_rest_is_refused(void)
     size_t note = talk_typed("tare", 3000.0);
     TEST_ASSERT_EQUAL_STRING("# refused 8: moving", board.notes[note + 1]);
     TEST_ASSERT_EQUAL_MEMORY(&before, &settings()->calibration, sizeof before);
-    stream_free(&stream);
     start_lays(&pulled, 1, adxl345_part_typical);
     note = talk_typed("tare", 3000.0);
     TEST_ASSERT_EQUAL_STRING("# refused 11: not 1 g", board.notes[note + 1]);
@@ -352,7 +341,7 @@ static void test_tare_of_what_is_no_rest_is_refused(void)
 }
 
 /* One level rest gives the offsets, whichever of the six is up; scales stay. */
-static void test_cal_finds_offsets(void)
+TEST(test_cal_finds_offsets)
 {
     static const int16_t offsets[] = { 30, -25, 44 };
     for (int i = 0; i < 6; i++) {
@@ -368,25 +357,5 @@ static void test_cal_finds_offsets(void)
         for (int axis = 0; axis < 3; axis++) {
             TEST_ASSERT_INT_WITHIN(8, 16 * offsets[axis], settings()->calibration.offset_lsb_q4[axis]);
         }
-        stream_free(&stream);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_cal6_of_any_part);
-    RUN_TEST(test_rows_after_cal6);
-    RUN_TEST(test_a_position_laid_again_is_refused);
-    RUN_TEST(test_an_oblique_rest_is_no_position);
-    RUN_TEST(test_seven_eighths_across_is_the_last_that_is_a_position);
-    RUN_TEST(test_a_rest_39_degrees_off_is_a_position);
-    RUN_TEST(test_a_position_too_far_off_is_refused);
-    RUN_TEST(test_a_part_beyond_the_limits_is_refused);
-    RUN_TEST(test_cal6_stops);
-    RUN_TEST(test_cal6_ends_with_the_sensor);
-    RUN_TEST(test_tare_levels_any_mounting);
-    RUN_TEST(test_tare_of_what_is_no_rest_is_refused);
-    RUN_TEST(test_cal_finds_offsets);
-    return UNITY_END();
 }

@@ -3,28 +3,17 @@
  * counted.
  */
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "app/app.h"
 #include "base/counters.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
-#include "support/board.h"
-#include "unity.h"
-
-static stream_t stream;
-
-void setUp(void) {}
+#include "support/talk.h"
+#include "support/test.h"
 
 /* Here, because a test that fails does not reach its end. */
-void tearDown(void)
-{
-    stream_free(&stream);
-}
-
 /* No sensor and wrong identity by turns, ten times: each is told once until samples come again, then anew. */
-static void test_alternating_faults_are_told_once_each(void)
+TEST(test_alternating_faults_are_told_once_each)
 {
     board_start_resting();
     board_run_ms(500);
@@ -47,7 +36,7 @@ static void test_alternating_faults_are_told_once_each(void)
     TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# fault 1: ", before));
 }
 
-static void test_counters_stay_at_their_greatest_value(void)
+TEST(test_counters_stay_at_their_greatest_value)
 {
     counters_start();
     count_lost(UINT32_MAX - 1u);
@@ -59,20 +48,17 @@ static void test_counters_stay_at_their_greatest_value(void)
 }
 
 /* Whole seconds since the start, over a stop and over the wrap of the microseconds. */
-static void test_uptime_counts_seconds(void)
+TEST(test_uptime_counts_seconds)
 {
-    stream = board_constant_stream(1000, 100.0, 31, -53, 248);
+    stream_t stream = board_constant_stream(1000, 100.0, 31, -53, 248);
     board_start(&stream, 0.0, 0xFFFFFFFFu - 2500000u);
     board_run_ms(990);
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_SECONDS));
     board_run_ms(30);
     TEST_ASSERT_EQUAL_UINT32(1, counted(COUNT_SECONDS));
-    board_type("stop");
-    board_run_ms(6000);
+    (void)talk_typed("stop", 6000);
     TEST_ASSERT_EQUAL_UINT32(7, counted(COUNT_SECONDS));
-    size_t before = board.note_count;
-    board_type("status");
-    board_run_ms(300);
+    size_t before = talk_typed("status", 300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", uptime s 7", before));
 }
 
@@ -80,19 +66,17 @@ static void test_uptime_counts_seconds(void)
  * z alternates between 242 and 254. A filter that goes on would put out about 248 (969 mg); a cold one puts out the
  * running median: the first sample itself, then the mean of two, and five rows are marked.
  */
-static void test_go_begins_cold(void)
+TEST(test_go_begins_cold)
 {
-    stream = board_constant_stream(1000, 100.0, 0, 0, 248);
+    stream_t stream = board_constant_stream(1000, 100.0, 0, 0, 248);
     for (size_t i = 0; i < stream.count; i++) {
         stream.rows[i].lsb[2] = (int16_t)((i & 1u) ? 254 : 242);
     }
     board_start(&stream, 0.0, 0);
     board_run_ms(2000);
-    board_type("stop");
-    board_run_ms(200);
+    (void)talk_typed("stop", 200);
     size_t first = board.row_count;
-    board_type("go");
-    board_run_ms(400);
+    (void)talk_typed("go", 400);
     const board_row_t *row = &board.rows[first];
     TEST_ASSERT_TRUE(board.row_count >= first + 10);
     /* 242 and 254 LSB are 945.3 and 992.2 mg */
@@ -108,10 +92,10 @@ static void test_go_begins_cold(void)
  * x is 600 LSB: no rail at 16 g (4095), beyond the one at 2 g (511). Samples latched before the change took effect are
  * those of the old range and must not be called clipped, whatever the phase at which the command comes.
  */
-static void test_old_samples_are_filtered_as_before_a_change_of_range(void)
+TEST(test_old_samples_are_filtered_as_before_a_change_of_range)
 {
     size_t old_on_the_way = 0;
-    stream = board_constant_stream(1000, 100.0, 600, 0, 248);
+    stream_t stream = board_constant_stream(1000, 100.0, 600, 0, 248);
     for (unsigned phase = 0; phase < 116; phase++) {
         board_start(&stream, 0.0, 0);
         board_run_ms(300.0);
@@ -137,7 +121,7 @@ static void test_old_samples_are_filtered_as_before_a_change_of_range(void)
 }
 
 /* One axis ahead of each of the next three samples, 10 ms apart, so that no row waits for all of them. */
-static void test_a_change_of_filter_goes_axis_by_axis(void)
+TEST(test_a_change_of_filter_goes_axis_by_axis)
 {
     board_start_resting();
     board_run_ms(500);
@@ -154,16 +138,4 @@ static void test_a_change_of_filter_goes_axis_by_axis(void)
         changed = now;
     }
     TEST_ASSERT_EQUAL_INT(3, changed);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_change_of_filter_goes_axis_by_axis);
-    RUN_TEST(test_alternating_faults_are_told_once_each);
-    RUN_TEST(test_counters_stay_at_their_greatest_value);
-    RUN_TEST(test_uptime_counts_seconds);
-    RUN_TEST(test_go_begins_cold);
-    RUN_TEST(test_old_samples_are_filtered_as_before_a_change_of_range);
-    return UNITY_END();
 }

@@ -10,8 +10,8 @@
 #include "base/health.h"
 #include "hal_watchdog.h"
 #include "path/pipeline.h"
-#include "support/board.h"
-#include "unity.h"
+#include "support/talk.h"
+#include "support/test.h"
 
 void setUp(void)
 {
@@ -39,21 +39,21 @@ static void assert_fault_is_told(const char *words)
     TEST_ASSERT_EQUAL_UINT(ROW_FAULT | ROW_COASTED, board.rows[board.row_count - 1].flags & (ROW_FAULT | ROW_COASTED));
 }
 
-static void test_no_sensor_is_told_once(void)
+TEST(test_no_sensor_is_told_once)
 {
     board_start_resting();
     adxl345_model_power(&hal_host_sensor, false);
     assert_fault_is_told("fault 1: no sensor at 0x53 or 0x1D");
 }
 
-static void test_wrong_identity_is_told_once(void)
+TEST(test_wrong_identity_is_told_once)
 {
     board_start_resting();
     hal_host_faults.id_wrong = true;
     assert_fault_is_told(": DEVID 0x00, not 0xE5");
 }
 
-static void test_silent_int1_is_told_once(void)
+TEST(test_silent_int1_is_told_once)
 {
     board_start_resting();
     hal_host_faults.int1_cut = true;
@@ -72,7 +72,7 @@ static void test_silent_int1_is_told_once(void)
     TEST_ASSERT_EQUAL_STRING_LEN("# fault 5 over: after ", board_last_note(), 22);
 }
 
-static void test_fault_begins_and_ends_with_one_line_each(void)
+TEST(test_fault_begins_and_ends_with_one_line_each)
 {
     size_t before = start_streaming();
     adxl345_model_power(&hal_host_sensor, false);
@@ -86,14 +86,12 @@ static void test_fault_begins_and_ends_with_one_line_each(void)
     TEST_ASSERT_EQUAL_UINT(0, board.rows[board.row_count - 1].flags & ROW_FAULT);
 }
 
-static void test_stop_during_a_fault_does_not_call_it_over(void)
+TEST(test_stop_during_a_fault_does_not_call_it_over)
 {
     (void)start_streaming();
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(300);
-    size_t before = board.note_count;
-    board_type("stop");
-    board_run_ms(300);
+    size_t before = talk_typed("stop", 300);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
 }
 
@@ -111,7 +109,7 @@ static void assert_silent_after_stop(size_t from)
 }
 
 /* Stop at every 0.5 ms of the way back from an unplugged sensor; the fault was told once, and not again by the stop. */
-static void test_stop_at_any_moment_of_a_recovery_is_silent(void)
+TEST(test_stop_at_any_moment_of_a_recovery_is_silent)
 {
     for (unsigned phase = 0; phase < 140; phase++) {
         size_t before = start_streaming();
@@ -126,7 +124,7 @@ static void test_stop_at_any_moment_of_a_recovery_is_silent(void)
 }
 
 /* A line is low until main backs off; stop then: the sensor still measures, and is to rest. */
-static void test_stop_between_two_attempts_puts_the_sensor_to_rest(void)
+TEST(test_stop_between_two_attempts_puts_the_sensor_to_rest)
 {
     for (unsigned phase = 0; phase < 60; phase++) {
         size_t before = start_streaming();
@@ -141,7 +139,7 @@ static void test_stop_between_two_attempts_puts_the_sensor_to_rest(void)
 }
 
 /* Both at once, as a script sends them: the sensor is still away, so nothing is over, wherever main is meanwhile. */
-static void test_stop_and_go_at_once_during_a_fault_do_not_call_it_over(void)
+TEST(test_stop_and_go_at_once_during_a_fault_do_not_call_it_over)
 {
     size_t before = start_streaming();
     adxl345_model_power(&hal_host_sensor, false);
@@ -149,8 +147,7 @@ static void test_stop_and_go_at_once_during_a_fault_do_not_call_it_over(void)
     for (int blanks = 0; blanks < 120; blanks++) { /* 87 us each before the commands: 10 ms of phases */
         char typed[160];
         snprintf(typed, sizeof typed, "%*s", blanks + 7, "stop\ngo");
-        board_type(typed);
-        board_run_ms(60);
+        (void)talk_typed(typed, 60);
     }
     TEST_ASSERT_EQUAL_size_t(120, board_notes_with("# going", before));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
@@ -161,7 +158,7 @@ static void test_stop_and_go_at_once_during_a_fault_do_not_call_it_over(void)
 }
 
 /* SDA or SCL comes off, supply and INT1 stay: the first line names the sensor, and no line the bus. */
-static void test_wires_off_are_told_as_a_missing_sensor(void)
+TEST(test_wires_off_are_told_as_a_missing_sensor)
 {
     for (unsigned phase = 0; phase < 20; phase++) {
         board_start_resting();
@@ -175,7 +172,7 @@ static void test_wires_off_are_told_as_a_missing_sensor(void)
 }
 
 /* A line is low from a moment between two samples: known 3 ms after the next one began, told with its name and wire. */
-static void test_a_line_that_is_low_is_told(void)
+TEST(test_a_line_that_is_low_is_told)
 {
     for (unsigned phase = 0; phase < 20; phase++) {
         bool scl = (phase & 1u) != 0;
@@ -201,7 +198,7 @@ static void test_a_line_that_is_low_is_told(void)
     }
 }
 
-static void test_ten_minutes_without_a_sensor(void)
+TEST(test_ten_minutes_without_a_sensor)
 {
     board_start_resting();
     adxl345_model_power(&hal_host_sensor, false);
@@ -210,25 +207,21 @@ static void test_ten_minutes_without_a_sensor(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault ", 0));
 }
 
-static void test_ten_minutes_stopped(void)
+TEST(test_ten_minutes_stopped)
 {
     (void)start_streaming();
-    board_type("stop");
-    board_run_ms(600e3);
+    (void)talk_typed("stop", 600e3);
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
     size_t rows = board.row_count;
-    board_type("go");
-    board_run_ms(1000);
+    (void)talk_typed("go", 1000);
     TEST_ASSERT_INT_WITHIN(6, 97, (int)(board.row_count - rows));
 }
 
-static void test_slowest_rate_and_largest_every(void)
+TEST(test_slowest_rate_and_largest_every)
 {
-    board_start_resting();
-    board_run_ms(300);
+    talk_start();
     board_type("rate 12.5");
-    board_type("every 10000");
-    board_run_ms(900e3);
+    (void)talk_typed("every 10000", 900e3);
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
     board_type("every 1");
     size_t rows = board.row_count;
@@ -240,16 +233,13 @@ static void test_slowest_rate_and_largest_every(void)
  * Replies keep the transmit ring full for a minute at the slowest line: rows come late or are dropped whole, nothing
  * hangs.
  */
-static void test_a_minute_with_the_ring_full(void)
+TEST(test_a_minute_with_the_ring_full)
 {
-    board_start_resting();
-    board_run_ms(300);
-    board_type("baud 9600");
-    board_run_ms(500);
+    talk_start();
+    (void)talk_typed("baud 9600", 500);
     for (int i = 0; i < 60; i++) {
         board_type("help");
-        board_type("status");
-        board_run_ms(1000);
+        (void)talk_typed("status", 1000);
     }
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
     board_run_ms(15000); /* what waits is said, and 2 s are over */
@@ -275,7 +265,7 @@ static void assert_bite(uint8_t stage)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# reset: watchdog, stage mask", 0));
 }
 
-static void test_hung_sampling_is_bitten(void)
+TEST(test_hung_sampling_is_bitten)
 {
     (void)start_streaming();
     hal_host_faults.int1_cut = true;
@@ -283,39 +273,16 @@ static void test_hung_sampling_is_bitten(void)
     assert_bite(HEALTH_SAMPLING);
 }
 
-static void test_hung_filtering_is_bitten(void)
+TEST(test_hung_filtering_is_bitten)
 {
     (void)start_streaming();
     *hang_stages_here() = HEALTH_FILTERING;
     assert_bite(HEALTH_FILTERING);
 }
 
-static void test_hung_output_is_bitten(void)
+TEST(test_hung_output_is_bitten)
 {
     (void)start_streaming();
     hal_host_faults.tx_stuck = true;
     assert_bite(HEALTH_OUTPUT);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_no_sensor_is_told_once);
-    RUN_TEST(test_wrong_identity_is_told_once);
-    RUN_TEST(test_silent_int1_is_told_once);
-    RUN_TEST(test_fault_begins_and_ends_with_one_line_each);
-    RUN_TEST(test_stop_during_a_fault_does_not_call_it_over);
-    RUN_TEST(test_stop_at_any_moment_of_a_recovery_is_silent);
-    RUN_TEST(test_stop_between_two_attempts_puts_the_sensor_to_rest);
-    RUN_TEST(test_stop_and_go_at_once_during_a_fault_do_not_call_it_over);
-    RUN_TEST(test_wires_off_are_told_as_a_missing_sensor);
-    RUN_TEST(test_a_line_that_is_low_is_told);
-    RUN_TEST(test_ten_minutes_without_a_sensor);
-    RUN_TEST(test_ten_minutes_stopped);
-    RUN_TEST(test_slowest_rate_and_largest_every);
-    RUN_TEST(test_a_minute_with_the_ring_full);
-    RUN_TEST(test_hung_sampling_is_bitten);
-    RUN_TEST(test_hung_filtering_is_bitten);
-    RUN_TEST(test_hung_output_is_bitten);
-    return UNITY_END();
 }

@@ -7,8 +7,8 @@
 #include "adxl345.h"
 #include "adxl345_driver.h"
 #include "adxl345_registers.h"
-#include "support/board.h"
-#include "unity.h"
+#include "support/talk.h"
+#include "support/test.h"
 
 /* of a `status`, a millisecond apart */
 enum { PHASES = 61 };
@@ -22,11 +22,6 @@ void setUp(void)
 {
     real = 0;
     stream = board_noisy_stream(300, 100.0, 1.5, 3u);
-}
-
-void tearDown(void)
-{
-    stream_free(&stream);
 }
 
 static uint8_t id_at(uint8_t address)
@@ -53,15 +48,14 @@ static void the_line_is(uint8_t address)
 }
 
 /* A `status` puts the line off by as long as it takes, which is several looks for the sensor. */
-static void test_fault_2_names_the_device_that_was_found_at_every_phase(void)
+TEST(test_fault_2_names_the_device_that_was_found_at_every_phase)
 {
     for (size_t a = 0; a < sizeof addresses; a++) {
         for (unsigned phase = 0; phase < PHASES; phase++) {
             board_start_with_rx(&stream, on_rx);
             hal_host_sensor.address = addresses[a];
             board_run_ms(phase);
-            board_type("status");
-            board_run_ms(100);
+            (void)talk_typed("status", 100);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_WRONG_ID, adxl345_fault());
             the_line_is(addresses[a]);
         }
@@ -69,7 +63,7 @@ static void test_fault_2_names_the_device_that_was_found_at_every_phase(void)
 }
 
 /* What is said of the device stays, whichever address is asked. */
-static void test_the_device_stays_named_while_the_other_address_is_asked(void)
+TEST(test_the_device_stays_named_while_the_other_address_is_asked)
 {
     for (size_t a = 0; a < sizeof addresses; a++) {
         unsigned asked_elsewhere = 0;
@@ -103,7 +97,7 @@ static void the_device_is(uint8_t address)
 }
 
 /* Also while the fault lasts and a second one, that is asked before it, begins to answer. */
-static void test_the_device_stays_named_when_another_one_answers_too(void)
+TEST(test_the_device_stays_named_when_another_one_answers_too)
 {
     for (size_t a = 0; a < sizeof addresses; a++) {
         board_start_with_rx(&stream, on_rx);
@@ -116,7 +110,7 @@ static void test_the_device_stays_named_when_another_one_answers_too(void)
 }
 
 /* Who asks for one address is told of the device that is there; both addresses again, it is still named. */
-static void test_the_device_at_the_address_asked_for_is_named(void)
+TEST(test_the_device_at_the_address_asked_for_is_named)
 {
     static const char *const asked[] = { "address 53", "address 1D" };
     for (size_t a = 0; a < sizeof addresses; a++) {
@@ -134,7 +128,7 @@ static void test_the_device_at_the_address_asked_for_is_named(void)
 }
 
 /* Whoever is asked answers, and is none: the line names the first of both with its own DEVID. */
-static void test_fault_2_names_one_of_two_devices_with_its_own_identity(void)
+TEST(test_fault_2_names_one_of_two_devices_with_its_own_identity)
 {
     for (unsigned phase = 0; phase < PHASES; phase++) {
         board_start_with_rx(&stream, on_rx);
@@ -150,7 +144,7 @@ static void test_fault_2_names_one_of_two_devices_with_its_own_identity(void)
 }
 
 /* The sensor comes back at the one address while the line about the device at the other one still waits. */
-static void test_fault_2_names_the_device_after_the_sensor_was_found(void)
+TEST(test_fault_2_names_the_device_after_the_sensor_was_found)
 {
     board_start_with_rx(&stream, on_rx);
     hal_host_sensor.address = ADXL345_ADDRESS_HIGH;
@@ -168,16 +162,4 @@ static void test_fault_2_names_the_device_after_the_sensor_was_found(void)
     TEST_ASSERT_EQUAL_HEX8(HIGH_ID, adxl345_foreign_id());
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 2: no ADXL345 at 0x1D: DEVID 0x42", 0));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_fault_2_names_the_device_that_was_found_at_every_phase);
-    RUN_TEST(test_the_device_stays_named_while_the_other_address_is_asked);
-    RUN_TEST(test_the_device_stays_named_when_another_one_answers_too);
-    RUN_TEST(test_the_device_at_the_address_asked_for_is_named);
-    RUN_TEST(test_fault_2_names_one_of_two_devices_with_its_own_identity);
-    RUN_TEST(test_fault_2_names_the_device_after_the_sensor_was_found);
-    return UNITY_END();
 }

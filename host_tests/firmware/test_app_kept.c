@@ -10,17 +10,12 @@
 #include "settings/settings_kept.h"
 #include "support/roles.h"
 #include "support/talk.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test.h"
 
 /* The mode may be another one: the header follows. */
 static void assert_loaded(const char *line, const char *words)
 {
-    size_t before = board.note_count;
-    talk_type(line);
+    size_t before = talk_typed(line, 400);
     TEST_ASSERT_EQUAL_size_t_MESSAGE(before + 2, board.note_count, line);
     TEST_ASSERT_EQUAL_STRING(words, board.notes[before]);
     TEST_ASSERT_EQUAL_INT(0, strncmp(board.notes[before + 1], "t_us,", 5));
@@ -37,7 +32,7 @@ static void save_some(void)
     TEST_ASSERT_EQUAL_STRING("# saved", talk_answer("save"));
 }
 
-static void test_saved_settings_survive_power(void)
+TEST(test_saved_settings_survive_power)
 {
     talk_start();
     save_some();
@@ -50,7 +45,7 @@ static void test_saved_settings_survive_power(void)
 }
 
 /* Rows go on through a save, one for each sample, and what is saved is whole. */
-static void test_a_save_while_sampling_costs_no_row(void)
+TEST(test_a_save_while_sampling_costs_no_row)
 {
     talk_start();
     talk_type("filter {robust}");
@@ -68,7 +63,7 @@ static void test_a_save_while_sampling_costs_no_row(void)
 }
 
 /* A set of another version: its calibration counts, the rest is as shipped, and the EEPROM is left alone. */
-static void test_the_calibration_outlives_another_version(void)
+TEST(test_the_calibration_outlives_another_version)
 {
     for (uint8_t version = 0; version <= SETTINGS_VERSION + 1u; version++) {
         bool own = version == SETTINGS_VERSION;
@@ -101,7 +96,7 @@ static void test_the_calibration_outlives_another_version(void)
  * follows, and its length, are those of this version: baud, rate, every, range, mode, address, i2c at its end. The
  * last is 0 in what an image without it has saved, which is auto.
  */
-static void test_the_places_of_a_record(void)
+TEST(test_the_places_of_a_record)
 {
     static const char other[] =
         "the saved record has another form: raise SETTINGS_VERSION, or settings that were saved "
@@ -124,21 +119,20 @@ static void test_the_places_of_a_record(void)
 }
 
 /* What is typed behind a save that fails is not taken for its outcome. */
-static void test_a_failed_save_is_said_before_the_next_command(void)
+TEST(test_a_failed_save_is_said_before_the_next_command)
 {
     talk_start();
     hal_host_eeprom_wear_out(STORE_COPY_0 + 5);
     talk_type("rate 50");
     size_t before = board.note_count;
     board_type("save");
-    board_type("load");
-    board_run_ms(2000);
+    (void)talk_typed("load", 2000);
     TEST_ASSERT_EQUAL_STRING("# refused 7: EEPROM failed", board.notes[before]);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# saved", before));
 }
 
 /* A measurement would change what is being saved. */
-static void test_no_save_while_something_is_measured(void)
+TEST(test_no_save_while_something_is_measured)
 {
     uint8_t before[1024];
     talk_start();
@@ -151,7 +145,7 @@ static void test_no_save_while_something_is_measured(void)
 }
 
 /* Settings do not change under a save: what is typed meanwhile waits, and then counts. */
-static void test_commands_wait_for_the_save(void)
+TEST(test_commands_wait_for_the_save)
 {
     talk_start();
     talk_type("stop");
@@ -165,7 +159,7 @@ static void test_commands_wait_for_the_save(void)
     TEST_ASSERT_EQUAL_UINT(1000, settings()->rate_dhz);
 }
 
-static void test_load_and_defaults(void)
+TEST(test_load_and_defaults)
 {
     talk_start();
     assert_loaded("load", "# settings: defaults, none saved");
@@ -187,7 +181,7 @@ static void test_load_and_defaults(void)
 }
 
 /* A saved baud rate that the PC does not speak is no trap. */
-static void test_the_strap_brings_the_default_baud_back(void)
+TEST(test_the_strap_brings_the_default_baud_back)
 {
     talk_start();
     talk_type("stop");
@@ -209,7 +203,7 @@ static void test_the_strap_brings_the_default_baud_back(void)
 }
 
 /* A watchdog that bites again and again may bite because of what was saved. */
-static void test_resets_again_and_again_leave_saved_settings_alone(void)
+TEST(test_resets_again_and_again_leave_saved_settings_alone)
 {
     talk_start();
     save_some();
@@ -224,7 +218,7 @@ static void test_resets_again_and_again_leave_saved_settings_alone(void)
 }
 
 /* Each filter of the list has a mark of its own, and what another image saved keeps all but the filter. */
-static void test_a_filter_that_the_image_does_not_hold(void)
+TEST(test_a_filter_that_the_image_does_not_hold)
 {
     for (uint8_t a = 0; a < FILTER_KIND_COUNT; a++) {
         for (uint8_t b = 0; b < a; b++) {
@@ -246,21 +240,4 @@ static void test_a_filter_that_the_image_does_not_hold(void)
     TEST_ASSERT_EQUAL_UINT(500, settings()->rate_dhz);
     TEST_ASSERT_EQUAL_UINT(0, settings()->choice.filter);
     TEST_ASSERT_EQUAL_UINT(0, settings()->choice.own);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_saved_settings_survive_power);
-    RUN_TEST(test_a_save_while_sampling_costs_no_row);
-    RUN_TEST(test_the_calibration_outlives_another_version);
-    RUN_TEST(test_the_places_of_a_record);
-    RUN_TEST(test_a_failed_save_is_said_before_the_next_command);
-    RUN_TEST(test_no_save_while_something_is_measured);
-    RUN_TEST(test_commands_wait_for_the_save);
-    RUN_TEST(test_load_and_defaults);
-    RUN_TEST(test_the_strap_brings_the_default_baud_back);
-    RUN_TEST(test_resets_again_and_again_leave_saved_settings_alone);
-    RUN_TEST(test_a_filter_that_the_image_does_not_hold);
-    return UNITY_END();
 }

@@ -1,21 +1,11 @@
 /* The whole firmware while its line changes: what waits is kept, and replies never cost a row. */
-#include <stdio.h>
 
 #include "base/counters.h"
 #include "settings/settings.h"
-#include "support/board.h"
-#include "unity.h"
-
-static stream_t wide;
-
-void setUp(void) {}
+#include "support/talk.h"
+#include "support/test.h"
 
 /* Here, because a test that fails does not reach its end. */
-void tearDown(void)
-{
-    stream_free(&wide);
-}
-
 /* Virtual milliseconds until the notes have become so many. */
 static void run_until_notes(size_t count)
 {
@@ -30,10 +20,9 @@ static void run_until_notes(size_t count)
  * Typed ahead, before the line has drained and changed: they wait in the receive ring, are obeyed and answered
  * afterwards.
  */
-static void test_lines_behind_a_change_of_baud_are_obeyed(void)
+TEST(test_lines_behind_a_change_of_baud_are_obeyed)
 {
-    board_start_resting();
-    board_run_ms(200);
+    talk_start();
     size_t before = board.note_count;
     board_type("baud 500000");
     board_type("every 3");
@@ -73,7 +62,7 @@ static void ask_all_the_time(size_t times)
  * The widest rows, as many as the line carries: 900 of 960 bytes a second, 3,600 of 3,840, 7,200 of 11,520. Replies
  * take what is left, and not a row is missing or late to the ring.
  */
-static void test_replies_never_push_a_row_out(void)
+TEST(test_replies_never_push_a_row_out)
 {
     static const struct {
         const char *rate, *baud;
@@ -82,13 +71,12 @@ static void test_replies_never_push_a_row_out(void)
     } lines[] = { { "rate 12.5", "baud 9600", 80000, 30 },
                   { "rate 50", "baud 38400", 20000, 60 },
                   { "rate 100", "baud 115200", 10000, 120 } };
-    wide = board_constant_stream(1000, 100.0, -4096, -4095, -4094);
+    stream_t wide = board_constant_stream(1000, 100.0, -4096, -4095, -4094);
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         board_start(&wide, 0.0, 4000000000u);
         board_run_ms(300);
         board_type(lines[i].rate);
-        board_type(lines[i].baud);
-        board_run_ms(1500);
+        (void)talk_typed(lines[i].baud, 1500);
         size_t first = board.row_count;
         ask_all_the_time(lines[i].times);
         TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_DROPPED));
@@ -98,12 +86,4 @@ static void test_replies_never_push_a_row_out(void)
             TEST_ASSERT_UINT32_WITHIN(2, lines[i].period_us, step_us);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_lines_behind_a_change_of_baud_are_obeyed);
-    RUN_TEST(test_replies_never_push_a_row_out);
-    return UNITY_END();
 }

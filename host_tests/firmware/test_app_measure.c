@@ -13,24 +13,15 @@
 #include "settings/settings.h"
 #include "support/documented_limits.h"
 #include "support/talk.h"
-#include "unity.h"
+#include "support/test.h"
 
 /* 256 samples at 400 Hz twice are 1.28 s; a change of configuration takes a period and 20 ms, three times. */
 enum { SELFTEST_MS = 1600, REST_X = 31, REST_Y = -53, REST_Z = 248, NEAR_LSB = 12 };
 
-static stream_t stream;
-
-void setUp(void) {}
-
-void tearDown(void)
-{
-    stream_free(&stream);
-}
-
 /* Every second reading is one LSB more, so that the mean of a whole number of pairs is known: half of one more. */
 static void start_exact(const int16_t self_test_lsb[3])
 {
-    stream = board_constant_stream(6000, 100.0, REST_X, REST_Y, REST_Z);
+    stream_t stream = board_constant_stream(6000, 100.0, REST_X, REST_Y, REST_Z);
     for (size_t i = 1; i < stream.count; i += 2) {
         for (size_t axis = 0; axis < 3; axis++) {
             stream.rows[i].lsb[axis]++;
@@ -68,14 +59,14 @@ static void assert_sensor_is_as_set(void)
  * The typical part: 522, -522 and 698 LSB. Rows of a stream of 100 Hz are read four times at 400 Hz, so 64 readings of
  * 1.5 LSB rms make each mean: their difference is good to 0.27 LSB, 1.4 is five times that.
  */
-static void test_a_good_part_passes_at_any_rate_and_range(void)
+TEST(test_a_good_part_passes_at_any_rate_and_range)
 {
     static const char *const rates[] = { "rate 12.5", "rate 25",  "rate 50", "rate 100",
                                          "rate 200",  "rate 400", "rate 800" };
     static const char *const ranges[] = { "range 2", "range 4", "range 8", "range 16" };
     static const double truth_lsb[] = { 522.0, 522.0, 698.0 };
     for (size_t i = 0; i < 7; i++) {
-        talk_start_noisy(&stream, 100.0, 0.0);
+        talk_start_noisy(100.0, 0.0);
         (void)talk_typed("baud 1000000", 100.0);
         (void)talk_typed(rates[i], 400.0);
         (void)talk_typed(ranges[i % 4], 600.0);
@@ -98,14 +89,13 @@ static void test_a_good_part_passes_at_any_rate_and_range(void)
         assert_no_row_is_shifted(row);
         TEST_ASSERT_EQUAL_UINT32(lost, counted(COUNT_LOST));
         TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_DROPPED));
-        stream_free(&stream);
     }
 }
 
 /* Rows stop for so long, and no other time; then filters warm up as after `go`; none is called missing. */
-static void test_rows_pause_and_begin_anew(void)
+TEST(test_rows_pause_and_begin_anew)
 {
-    talk_start_noisy(&stream, 100.0, 0.0);
+    talk_start_noisy(100.0, 0.0);
     (void)talk_typed("selftest", 2500.0);
     size_t gaps = 0;
     for (size_t i = 1; i < board.row_count; i++) {
@@ -126,7 +116,7 @@ static void test_rows_pause_and_begin_anew(void)
  * The limits by definition, x and y 88.5 to 955.8 LSB, z 110.25 to 1286.25: the last whole LSB on each side of each.
  * Pairs that a mean has cut in two shift it by 3/256 LSB at most. y acts the other way.
  */
-static void test_the_limits(void)
+TEST(test_the_limits)
 {
     static const struct {
         int16_t shift_lsb[3];
@@ -150,12 +140,11 @@ static void test_the_limits(void)
             TEST_ASSERT_DOUBLE_WITHIN(1.0 / 16.0 + 3.0 / 256.0, along, lsb);
             TEST_ASSERT_EQUAL_STRING_MESSAGE(parts[i].verdict[axis], strrchr(told, ' ') + 1, told);
         }
-        stream_free(&stream);
     }
 }
 
 /* Gain and offset of the part have no part in the shift. */
-static void test_offsets_do_not_count(void)
+TEST(test_offsets_do_not_count)
 {
     static const int16_t shift_lsb[] = { 300, -300, 400 };
     start_exact(shift_lsb);
@@ -171,11 +160,11 @@ static void test_offsets_do_not_count(void)
 }
 
 /* The board is turned by 20 LSB in x at this time of a test, in the plain half or in the other one. */
-static void test_a_board_that_moves_is_refused(void)
+TEST(test_a_board_that_moves_is_refused)
 {
     static const double at_ms[] = { 350.0, 1000.0 };
     for (size_t i = 0; i < 2; i++) {
-        stream = board_noisy_stream(6000, 100.0, 1.5, 12u);
+        stream_t stream = board_noisy_stream(6000, 100.0, 1.5, 12u);
         for (size_t k = 0; k < stream.count; k++) {
             stream.rows[k].lsb[0] = (int16_t)(stream.rows[k].lsb[0] + ((double)k * 10.0 > 500.0 + at_ms[i] ? 20 : 0));
         }
@@ -187,16 +176,15 @@ static void test_a_board_that_moves_is_refused(void)
         TEST_ASSERT_EQUAL_size_t(note + 2, board.note_count);
         TEST_ASSERT_TRUE(board.note_ms[note + 1] < 500.0 + (i == 0 ? 1100.0 : 1600.0));
         assert_sensor_is_as_set();
-        stream_free(&stream);
     }
 }
 
 /* The supply fails for 30 ms at any stage: a result is one of good samples, and everything is as before afterwards. */
-static void test_a_supply_that_fails_in_the_middle(void)
+TEST(test_a_supply_that_fails_in_the_middle)
 {
     size_t cut = 0;
     for (double at_ms = 3.0; at_ms < 1600.0; at_ms += 17.0) {
-        talk_start_noisy(&stream, 100.0, 0.0);
+        talk_start_noisy(100.0, 0.0);
         size_t note = talk_typed("selftest", at_ms);
         adxl345_model_power(&hal_host_sensor, false);
         board_run_ms(30.0);
@@ -207,15 +195,14 @@ static void test_a_supply_that_fails_in_the_middle(void)
         assert_sensor_is_as_set();
         assert_no_row_is_shifted(0);
         TEST_ASSERT_TRUE(board.rows[board.row_count - 1].flags == 0);
-        stream_free(&stream);
     }
     TEST_ASSERT_TRUE(cut > 70); /* of 94, all but those behind its end */
 }
 
 /* Off the bus for good: told within half a second, and no hang; the sensor that comes back is configured as set. */
-static void test_a_sensor_that_stays_away(void)
+TEST(test_a_sensor_that_stays_away)
 {
-    talk_start_noisy(&stream, 100.0, 0.0);
+    talk_start_noisy(100.0, 0.0);
     size_t note = talk_typed("selftest", 900.0);
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(500.0);
@@ -232,7 +219,7 @@ static void test_a_sensor_that_stays_away(void)
 }
 
 /* What of it changes the sensor ends the test, what does not leaves it its result; `stop` and `go` as always. */
-static void test_commands_in_the_middle(void)
+TEST(test_commands_in_the_middle)
 {
     static const struct {
         const char *command;
@@ -243,7 +230,7 @@ static void test_commands_in_the_middle(void)
                  { "defaults", true },        { "help", false },     { "mode plot", false } };
     for (size_t i = 0; i < sizeof talk / sizeof talk[0]; i++) {
         for (double at_ms = 20.0; at_ms < 1300.0; at_ms += 311.0) {
-            talk_start_noisy(&stream, 100.0, 0.0);
+            talk_start_noisy(100.0, 0.0);
             size_t note = talk_typed("selftest", at_ms);
             (void)talk_typed(talk[i].command, SELFTEST_MS + 1000.0);
             if (strcmp(talk[i].command, "mode plot") != 0) {
@@ -252,15 +239,14 @@ static void test_commands_in_the_middle(void)
             TEST_ASSERT_EQUAL_size_t_MESSAGE(talk[i].ends_it, board_notes_with("# refused 9", note), talk[i].command);
             talk_assert_told_once(note, "selftest");
             assert_sensor_is_as_set();
-            stream_free(&stream);
         }
     }
 }
 
-static void test_stop_in_the_middle(void)
+TEST(test_stop_in_the_middle)
 {
     for (double at_ms = 5.0; at_ms < 1500.0; at_ms += 61.0) {
-        talk_start_noisy(&stream, 100.0, 0.0);
+        talk_start_noisy(100.0, 0.0);
         size_t note = talk_typed("selftest", at_ms);
         size_t stopped = talk_typed("stop", 500.0);
         TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
@@ -271,17 +257,15 @@ static void test_stop_in_the_middle(void)
         TEST_ASSERT_TRUE(board.row_count > row + 40);
         assert_no_row_is_shifted(0);
         assert_sensor_is_as_set();
-        stream_free(&stream);
     }
 }
 
-static void test_one_at_a_time(void)
+TEST(test_one_at_a_time)
 {
-    talk_start_noisy(&stream, 100.0, 0.0);
+    talk_start_noisy(100.0, 0.0);
     size_t note = talk_typed("selftest", 300.0);
     board_type("noise");
-    board_type("selftest");
-    board_run_ms(200.0);
+    (void)talk_typed("selftest", 200.0);
     TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# refused 10: busy measuring", note));
     board_run_ms(SELFTEST_MS);
     talk_assert_told_once(note, "selftest");
@@ -290,9 +274,9 @@ static void test_one_at_a_time(void)
 }
 
 /* Not while nothing is measured: told at once. */
-static void test_without_samples_there_is_no_measurement(void)
+TEST(test_without_samples_there_is_no_measurement)
 {
-    talk_start_noisy(&stream, 100.0, 0.0);
+    talk_start_noisy(100.0, 0.0);
     (void)talk_typed("stop", 200.0);
     size_t note = talk_typed("noise", 100.0);
     talk_assert_note("# refused 9: samples lost or settings changed", note + 1);
@@ -308,9 +292,9 @@ static void test_without_samples_there_is_no_measurement(void)
 }
 
 /* After a reset of the MCU amid the force the sensor has it still, until it is configured. */
-static void test_a_reset_amid_the_force(void)
+TEST(test_a_reset_amid_the_force)
 {
-    talk_start_noisy(&stream, 100.0, 0.0);
+    talk_start_noisy(100.0, 0.0);
     (void)talk_typed("selftest", 1000.0);
     TEST_ASSERT_EQUAL_HEX8(0x8B, hal_host_sensor.reg[ADXL345_DATA_FORMAT]);
     hal_host_reset_mcu(HAL_RESET_EXTERNAL);
@@ -323,9 +307,9 @@ static void test_a_reset_amid_the_force(void)
 }
 
 /* A second net below the driver's own deadlines. */
-static void test_no_measurement_lasts_longer_than_two_minutes(void)
+TEST(test_no_measurement_lasts_longer_than_two_minutes)
 {
-    talk_start_noisy(&stream, 100.0, 0.0);
+    talk_start_noisy(100.0, 0.0);
     size_t note = talk_typed("noise", 100.0);
     for (int s = 0; s < 60 * LIMIT_MEASURE_MINUTES; s++) { /* it began in second 0 */
         count(COUNT_SECONDS);
@@ -335,23 +319,4 @@ static void test_no_measurement_lasts_longer_than_two_minutes(void)
     count(COUNT_SECONDS);
     board_run_ms(100.0);
     talk_assert_note("# refused 9: samples lost or settings changed", note + 1);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_good_part_passes_at_any_rate_and_range);
-    RUN_TEST(test_rows_pause_and_begin_anew);
-    RUN_TEST(test_the_limits);
-    RUN_TEST(test_offsets_do_not_count);
-    RUN_TEST(test_a_board_that_moves_is_refused);
-    RUN_TEST(test_a_supply_that_fails_in_the_middle);
-    RUN_TEST(test_a_sensor_that_stays_away);
-    RUN_TEST(test_commands_in_the_middle);
-    RUN_TEST(test_stop_in_the_middle);
-    RUN_TEST(test_one_at_a_time);
-    RUN_TEST(test_without_samples_there_is_no_measurement);
-    RUN_TEST(test_a_reset_amid_the_force);
-    RUN_TEST(test_no_measurement_lasts_longer_than_two_minutes);
-    return UNITY_END();
 }

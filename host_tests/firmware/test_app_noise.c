@@ -5,22 +5,13 @@
 
 #include "settings/settings.h"
 #include "support/talk.h"
-#include "unity.h"
-
-static stream_t stream;
-
-void setUp(void) {}
-
-void tearDown(void)
-{
-    stream_free(&stream);
-}
+#include "support/test.h"
 
 /*
  * 256 readings of known noise: the estimate's own deviation is 1 / sqrt(512) = 4.4 % of rms; 18 % are four times that.
  * R is 1.5 times the variance. Told after 256 samples, of every second, fourth, eighth from 200 Hz on.
  */
-static void test_noise_at_any_rate(void)
+TEST(test_noise_at_any_rate)
 {
     static const struct {
         const char *command;
@@ -28,7 +19,7 @@ static void test_noise_at_any_rate(void)
     } rates[] = { { "rate 12.5", 12.5, 20.48 }, { "rate 50", 50.0, 5.12 },   { "rate 100", 100.0, 2.56 },
                   { "rate 200", 200.0, 2.56 },  { "rate 400", 400.0, 2.56 }, { "rate 800", 800.0, 2.56 } };
     for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
-        talk_start_noisy(&stream, rates[i].rate_hz, 0.0);
+        talk_start_noisy(rates[i].rate_hz, 0.0);
         (void)talk_typed(rates[i].command, 1000.0);
         double begun_ms = hal_host_now_ms();
         size_t note = talk_typed("noise", rates[i].seconds * 1000.0 + 200.0);
@@ -47,14 +38,13 @@ static void test_noise_at_any_rate(void)
             TEST_ASSERT_DOUBLE_WITHIN(0.18 * truth, truth, rms);
             TEST_ASSERT_DOUBLE_WITHIN(0.02 + 2.0 * rms / 256.0, 1.5 * rms * rms, r);
         }
-        stream_free(&stream);
     }
 }
 
 /* The samples that it looks at are the rows' own: none is missing meanwhile. */
-static void test_noise_takes_nothing_from_the_rows(void)
+TEST(test_noise_takes_nothing_from_the_rows)
 {
-    talk_start_noisy(&stream, 100.0, 0.0);
+    talk_start_noisy(100.0, 0.0);
     size_t first = board.row_count;
     (void)talk_typed("noise", 3000.0);
     TEST_ASSERT_TRUE(board.row_count >= first + 299);
@@ -65,10 +55,10 @@ static void test_noise_takes_nothing_from_the_rows(void)
 }
 
 /* Turning by 4.5 LSB in the time of a measurement, or a knock of 128: refused; the knock at once. */
-static void test_noise_of_a_board_that_moves_is_refused(void)
+TEST(test_noise_of_a_board_that_moves_is_refused)
 {
     for (int knock = 0; knock < 2; knock++) {
-        stream = board_noisy_stream(6000, 100.0, 1.5, 13u);
+        stream_t stream = board_noisy_stream(6000, 100.0, 1.5, 13u);
         for (size_t k = 0; k < stream.count; k++) {
             double off = knock != 0 ? (k == 100 ? 140.0 : 0.0) : 6.0 * (double)k / 256.0;
             stream.rows[k].lsb[1] = (int16_t)(stream.rows[k].lsb[1] + (int)lround(off));
@@ -81,11 +71,10 @@ static void test_noise_of_a_board_that_moves_is_refused(void)
         if (knock != 0) {
             TEST_ASSERT_TRUE(board.note_ms[note + 1] < 1200.0);
         }
-        stream_free(&stream);
     }
 }
 
-static void test_noise_ends_with_another_rate_and_goes_on_with_another_filter(void)
+TEST(test_noise_ends_with_another_rate_and_goes_on_with_another_filter)
 {
     static const struct {
         const char *command;
@@ -93,17 +82,16 @@ static void test_noise_ends_with_another_rate_and_goes_on_with_another_filter(vo
     } talk[] = { { "rate 50", true },          { "range 4", true },  { "stop", true },        { "go", true },
                  { "filter {robust}", false }, { "every 3", false }, { "baud 250000", false } };
     for (size_t i = 0; i < sizeof talk / sizeof talk[0]; i++) {
-        talk_start_noisy(&stream, 100.0, 0.0);
+        talk_start_noisy(100.0, 0.0);
         size_t note = talk_typed("noise", 500.0);
         (void)talk_typed(talk[i].command, 3000.0);
         TEST_ASSERT_EQUAL_size_t_MESSAGE(talk[i].ends_it, board_notes_with("# refused 9", note), talk[i].command);
         talk_assert_told_once(note, "noise");
-        stream_free(&stream);
     }
 }
 
 /* A sensor whose clock is 2 % fast, 3 % slow or right; the measurement itself is good to some ppm. */
-static void test_odr_tells_the_measured_rate(void)
+TEST(test_odr_tells_the_measured_rate)
 {
     static const struct {
         double ppm;
@@ -112,31 +100,18 @@ static void test_odr_tells_the_measured_rate(void)
                    { -30000.0, "# odr 97.00 Hz, -3 % from 100 Hz" },
                    { 0.0, "# odr 100.00 Hz, 0 % from 100 Hz" } };
     for (size_t i = 0; i < 3; i++) {
-        talk_start_noisy(&stream, 100.0, clocks[i].ppm);
+        talk_start_noisy(100.0, clocks[i].ppm);
         size_t note = talk_typed("odr", 200.0);
         TEST_ASSERT_EQUAL_size_t(note + 1, board.note_count);
         TEST_ASSERT_EQUAL_STRING_LEN(clocks[i].told, board.notes[note], strlen(clocks[i].told));
-        stream_free(&stream);
     }
 }
 
-static void test_odr_is_not_known_before_sixteen_samples(void)
+TEST(test_odr_is_not_known_before_sixteen_samples)
 {
-    talk_start_noisy(&stream, 100.0, 0.0);
+    talk_start_noisy(100.0, 0.0);
     (void)talk_typed("rate 12.5", 100.0);
     talk_assert_note("# odr: not measured yet", talk_typed("odr", 1000.0));
     board_run_ms(1000.0);
     talk_assert_note("# odr 12.50 Hz, 0 % from 12.5 Hz", talk_typed("odr", 200.0));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_noise_at_any_rate);
-    RUN_TEST(test_noise_takes_nothing_from_the_rows);
-    RUN_TEST(test_noise_of_a_board_that_moves_is_refused);
-    RUN_TEST(test_noise_ends_with_another_rate_and_goes_on_with_another_filter);
-    RUN_TEST(test_odr_tells_the_measured_rate);
-    RUN_TEST(test_odr_is_not_known_before_sixteen_samples);
-    return UNITY_END();
 }

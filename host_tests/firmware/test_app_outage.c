@@ -7,12 +7,8 @@
 #include "base/counters.h"
 #include "base/notices.h"
 #include "path/pipeline.h"
-#include "support/board.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/talk.h"
+#include "support/test.h"
 
 /* What a line says of an outage that is over. */
 typedef struct {
@@ -106,7 +102,7 @@ static void assert_outage_is_told(size_t note, size_t row, double tolerance_ms)
     TEST_ASSERT_EQUAL_UINT32(told.lost, counted(COUNT_LOST));
 }
 
-static void test_end_of_a_fault_tells_its_length_and_the_samples_lost(void)
+TEST(test_end_of_a_fault_tells_its_length_and_the_samples_lost)
 {
     static const double lengths_ms[] = { 60, 333, 2000, 58000, 90000 };
     for (size_t i = 0; i < sizeof lengths_ms / sizeof lengths_ms[0]; i++) {
@@ -123,7 +119,7 @@ static void test_end_of_a_fault_tells_its_length_and_the_samples_lost(void)
 }
 
 /* The second outage tells of itself alone. */
-static void test_each_outage_begins_anew(void)
+TEST(test_each_outage_begins_anew)
 {
     board_start_resting();
     board_run_ms(500);
@@ -152,7 +148,7 @@ static void fill_replies(void)
     TEST_ASSERT_FALSE(notices_room());
 }
 
-static void test_a_fault_for_which_there_is_no_room_is_told_later(void)
+TEST(test_a_fault_for_which_there_is_no_room_is_told_later)
 {
     board_start_resting();
     board_run_ms(500);
@@ -171,7 +167,7 @@ static void test_a_fault_for_which_there_is_no_room_is_told_later(void)
 }
 
 /* What is told is when it was seen, not when there was room for its line. */
-static void test_a_fault_that_begins_while_there_is_no_room_is_as_long_as_it_was(void)
+TEST(test_a_fault_that_begins_while_there_is_no_room_is_as_long_as_it_was)
 {
     outage_t was;
     board_start_resting();
@@ -189,12 +185,11 @@ static void test_a_fault_that_begins_while_there_is_no_room_is_as_long_as_it_was
  * While a slow line carries a text one fault ends and another one passes, and another sensor comes: each is told with
  * its own numbers.
  */
-static void test_the_end_of_a_fault_keeps_its_numbers_until_it_is_told(void)
+TEST(test_the_end_of_a_fault_keeps_its_numbers_until_it_is_told)
 {
     outage_t was[2];
     board_start_resting();
-    board_type("baud 9600");
-    board_run_ms(1000);
+    (void)talk_typed("baud 9600", 1000);
     size_t before = board.note_count;
     take_away(&was[0], 500);
     for (int i = 0; i < 6; i++) {
@@ -215,18 +210,16 @@ static void test_the_end_of_a_fault_keeps_its_numbers_until_it_is_told(void)
 }
 
 /* Samples that come again while the line drains for its new rate wait until it has it. */
-static void test_what_is_lost_is_counted_before_it_is_told(void)
+TEST(test_what_is_lost_is_counted_before_it_is_told)
 {
     outage_t was;
     board_start_resting();
-    board_type("baud 9600");
-    board_run_ms(1000);
+    (void)talk_typed("baud 9600", 1000);
     take_away(&was, 500);
     for (int i = 0; i < 6; i++) { /* 0.2 s of answers */
         board_type("odr");
     }
-    board_type("baud 115200");
-    board_run_ms(20);
+    (void)talk_typed("baud 115200", 20);
     give_back(&was);
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_LOST));
     board_run_ms(1500);
@@ -236,7 +229,7 @@ static void test_what_is_lost_is_counted_before_it_is_told(void)
 }
 
 /* Milliseconds in 32 bits wrap after 49.7 days: what is longer is told as the greatest number. */
-static void test_an_outage_of_two_months_is_not_told_as_a_short_one(void)
+TEST(test_an_outage_of_two_months_is_not_told_as_a_short_one)
 {
     static const uint32_t passed_s[] = { 4294900u, 4294967u, 5184000u };
     for (size_t i = 0; i < sizeof passed_s / sizeof passed_s[0]; i++) {
@@ -255,16 +248,14 @@ static void test_an_outage_of_two_months_is_not_told_as_a_short_one(void)
 }
 
 /* A plot has no lines: what ended meanwhile is told behind it, as long as it was. */
-static void test_a_fault_that_ends_in_a_plot_is_told_with_its_length(void)
+TEST(test_a_fault_that_ends_in_a_plot_is_told_with_its_length)
 {
     board_start_resting();
     board_run_ms(500);
     for (int twice = 0; twice <= 1; twice++) {
         adxl345_model_power(&hal_host_sensor, false);
         board_run_ms(300);
-        size_t before = board.note_count;
-        board_type("mode plot");
-        board_run_ms(400);
+        size_t before = talk_typed("mode plot", 400);
         adxl345_model_power(&hal_host_sensor, true);
         board_run_ms(2000);
         if (twice) { /* gone again before it was told: one outage */
@@ -274,8 +265,7 @@ static void test_a_fault_that_ends_in_a_plot_is_told_with_its_length(void)
             board_run_ms(2000);
         }
         TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
-        board_type("mode csv");
-        board_run_ms(200);
+        (void)talk_typed("mode csv", 200);
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with("over", before));
         told_t told = told_by(board.note_count - 1);
         TEST_ASSERT_DOUBLE_WITHIN(50.0, twice ? 3220 : 720, told.ms);
@@ -284,14 +274,13 @@ static void test_a_fault_that_ends_in_a_plot_is_told_with_its_length(void)
 }
 
 /* Twice, which is one outage; over before the plot is, or not. */
-static void test_a_fault_that_begins_in_a_plot_is_told_behind_it(void)
+TEST(test_a_fault_that_begins_in_a_plot_is_told_behind_it)
 {
     for (int over = 0; over <= 1; over++) {
         outage_t first, was;
         board_start_resting();
         board_run_ms(500);
-        board_type("mode plot");
-        board_run_ms(300);
+        (void)talk_typed("mode plot", 300);
         take_away(&first, 700);
         give_back(&first);
         take_away(&was, 3000);
@@ -301,8 +290,7 @@ static void test_a_fault_that_begins_in_a_plot_is_told_behind_it(void)
         for (int step = 0; step <= 1; step++) {
             if (step == over) {
                 TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault", 0));
-                board_type("mode csv");
-                board_run_ms(500);
+                (void)talk_typed("mode csv", 500);
             } else {
                 give_back(&was);
             }
@@ -318,15 +306,13 @@ static void test_a_fault_that_begins_in_a_plot_is_told_behind_it(void)
  * INT1 is cut at any moment between two samples: the driver finds out by asking the sensor, and what it reads then is
  * in time for its row. So no sample is discarded as late, and the line may say that none is lost.
  */
-static void test_a_cut_of_int1_loses_no_sample(void)
+TEST(test_a_cut_of_int1_loses_no_sample)
 {
     static const char *const rates[] = { "rate 12.5", "rate 25",  "rate 50", "rate 100",
                                          "rate 200",  "rate 400", "rate 800" };
     for (size_t r = 0; r < sizeof rates / sizeof rates[0]; r++) {
-        board_start_resting();
-        board_run_ms(300);
-        board_type(rates[r]);
-        board_run_ms(1000);
+        talk_start();
+        (void)talk_typed(rates[r], 1000);
         for (unsigned tenths = 0; tenths < 10; tenths++) {
             hal_host_faults.int1_cut = true;
             board_run_ms(500);
@@ -338,20 +324,4 @@ static void test_a_cut_of_int1_loses_no_sample(void)
         }
         TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_LATE));
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_end_of_a_fault_tells_its_length_and_the_samples_lost);
-    RUN_TEST(test_each_outage_begins_anew);
-    RUN_TEST(test_a_fault_for_which_there_is_no_room_is_told_later);
-    RUN_TEST(test_a_fault_that_begins_while_there_is_no_room_is_as_long_as_it_was);
-    RUN_TEST(test_the_end_of_a_fault_keeps_its_numbers_until_it_is_told);
-    RUN_TEST(test_what_is_lost_is_counted_before_it_is_told);
-    RUN_TEST(test_an_outage_of_two_months_is_not_told_as_a_short_one);
-    RUN_TEST(test_a_fault_that_ends_in_a_plot_is_told_with_its_length);
-    RUN_TEST(test_a_fault_that_begins_in_a_plot_is_told_behind_it);
-    RUN_TEST(test_a_cut_of_int1_loses_no_sample);
-    return UNITY_END();
 }

@@ -1,5 +1,4 @@
 /* What makes the console one for a person: rows wait while he reads, and the answers say what he needs next. */
-#include <string.h>
 
 #include "app/app.h"
 #include "base/counters.h"
@@ -9,19 +8,13 @@
 #include "support/documented_limits.h"
 #include "support/roles.h"
 #include "support/talk.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test.h"
 
 /* After the last line of a long answer no row for so long; the next has the flag, and those in between are counted. */
 static void assert_rows_wait(const char *command)
 {
     talk_start();
-    size_t note = board.note_count;
-    board_type(command);
-    board_run_ms(6000);
+    size_t note = talk_typed(command, 6000);
     TEST_ASSERT_TRUE_MESSAGE(board.note_count > note, command);
     double last_ms = board.note_ms[board.note_count - 1];
     size_t next = board.row_count;
@@ -38,7 +31,7 @@ static void assert_rows_wait(const char *command)
     }
 }
 
-static void test_rows_wait_while_a_long_answer_is_read(void)
+TEST(test_rows_wait_while_a_long_answer_is_read)
 {
     assert_rows_wait("help");
     assert_rows_wait("settings");
@@ -47,7 +40,7 @@ static void test_rows_wait_while_a_long_answer_is_read(void)
 }
 
 /* By the time of the samples, in steps of 65.536 ms: to the one that is nearest. */
-static void test_rows_are_held_to_the_nearest_step(void)
+TEST(test_rows_are_held_to_the_nearest_step)
 {
     enum { STEP_US = 65536, STEPS = (1000000 * LIMIT_HELD_S + STEP_US / 2) / STEP_US };
     for (uint32_t steps = STEPS - 1; steps <= STEPS + 1; steps++) {
@@ -63,52 +56,47 @@ static void test_rows_are_held_to_the_nearest_step(void)
 }
 
 /* Samples are filtered meanwhile: the first row afterwards is where a filter that went on is. */
-static void test_filters_go_on_meanwhile(void)
+TEST(test_filters_go_on_meanwhile)
 {
     talk_start();
     uint32_t before = counted(COUNT_SAMPLES);
-    board_type("help");
-    board_run_ms(1500);
+    (void)talk_typed("help", 1500);
     TEST_ASSERT_UINT32_WITHIN(2, before + 150u, counted(COUNT_SAMPLES));
 }
 
-static void test_short_answers_and_a_reset_hold_no_row(void)
+TEST(test_short_answers_and_a_reset_hold_no_row)
 {
     talk_start();
     board_type("rate");
     board_type("version");
-    board_type("nonsense");
-    board_run_ms(1000);
+    (void)talk_typed("nonsense", 1000);
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_HELD));
 }
 
 /* Who types on has read it: Enter alone, too. */
-static void test_the_next_line_lets_rows_go_on(void)
+TEST(test_the_next_line_lets_rows_go_on)
 {
     static const char *const lines[] = { "", "rate" };
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         talk_start();
-        board_type("status");
-        board_run_ms(500);
+        (void)talk_typed("status", 500);
         double typed_ms = hal_host_now_ms();
         size_t rows = board.row_count;
-        board_type(lines[i]);
-        board_run_ms(300);
+        (void)talk_typed(lines[i], 300);
         TEST_ASSERT_TRUE(board.row_count > rows + 25);
         TEST_ASSERT_TRUE(board.rows[rows].at_ms - typed_ms < 30.0);
     }
 }
 
-static void test_a_plot_goes_on(void)
+TEST(test_a_plot_goes_on)
 {
     talk_start();
     talk_type("mode plot");
-    board_type("help");
-    board_run_ms(3000);
+    (void)talk_typed("help", 3000);
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_HELD));
 }
 
-static void test_the_filter_in_force_keeps_its_parameters(void)
+TEST(test_the_filter_in_force_keeps_its_parameters)
 {
     talk_start();
     talk_type("filter {robust}");
@@ -126,7 +114,7 @@ static void test_the_filter_in_force_keeps_its_parameters(void)
 }
 
 /* A parameter typed as it was before its filter was left is no unchanged one: the filter gets it. */
-static void test_a_parameter_typed_again_after_another_filter_counts(void)
+TEST(test_a_parameter_typed_again_after_another_filter_counts)
 {
     talk_start();
     talk_type("filter {robust}");
@@ -139,7 +127,7 @@ static void test_a_parameter_typed_again_after_another_filter_counts(void)
 }
 
 /* Long answers first: a change of the line's rate behind them stops the filters for the last one at most. */
-static void test_a_change_of_baud_behind_long_answers_resets_nothing(void)
+TEST(test_a_change_of_baud_behind_long_answers_resets_nothing)
 {
     static const char *const lines[] = { "help", "status" };
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
@@ -149,50 +137,28 @@ static void test_a_change_of_baud_behind_long_answers_resets_nothing(void)
         for (int k = 0; k < 4; k++) {
             board_type(lines[i]);
         }
-        board_type("baud 19200");
-        board_run_ms(12000);
+        (void)talk_typed("baud 19200", 12000);
         TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
         TEST_ASSERT_EQUAL_UINT32(19200, settings()->baud);
     }
 }
 
-static void test_help_lists_the_parameters_of_the_filter_in_force(void)
+TEST(test_help_lists_the_parameters_of_the_filter_in_force)
 {
     talk_start();
     talk_type("filter {robust}");
-    size_t before = board.note_count;
-    board_type("help");
-    board_run_ms(1000);
+    size_t before = talk_typed("help", 1000);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# gate: 1 to 16, 0: off", before));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# b0", before));
     talk_type("filter {default}");
-    before = board.note_count;
-    board_type("help");
-    board_run_ms(1000);
+    before = talk_typed("help", 1000);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# gate:", before));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# every: 1 to 10000", before));
 }
 
-static void test_the_version_is_said(void)
+TEST(test_the_version_is_said)
 {
     talk_start();
     TEST_ASSERT_EQUAL_STRING(board.notes[0], talk_answer("version"));
     TEST_ASSERT_EQUAL_STRING_LEN("# tilt-uno ", board.notes[0], 11);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_rows_wait_while_a_long_answer_is_read);
-    RUN_TEST(test_rows_are_held_to_the_nearest_step);
-    RUN_TEST(test_filters_go_on_meanwhile);
-    RUN_TEST(test_short_answers_and_a_reset_hold_no_row);
-    RUN_TEST(test_the_next_line_lets_rows_go_on);
-    RUN_TEST(test_a_plot_goes_on);
-    RUN_TEST(test_the_filter_in_force_keeps_its_parameters);
-    RUN_TEST(test_a_parameter_typed_again_after_another_filter_counts);
-    RUN_TEST(test_a_change_of_baud_behind_long_answers_resets_nothing);
-    RUN_TEST(test_help_lists_the_parameters_of_the_filter_in_force);
-    RUN_TEST(test_the_version_is_said);
-    return UNITY_END();
 }

@@ -1,22 +1,19 @@
 /* What a sample's period leaves: filters and rates that do not go together are refused, rows are thinned. */
 #include <stdio.h>
-#include <string.h>
 
 #include "base/hang_test.h"
 #include "filter_list.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
-#include "support/board.h"
 #include "support/documented_limits.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/talk.h"
+#include "support/test.h"
 
 void setUp(void)
 {
     *hang_stages_here() = 0;
 }
-
-void tearDown(void) {}
 
 /*
  * A processor of 15.5 MHz: 19,375 cycles a sample at 800 Hz, 11,075 without the rest of its way. 3 x 4,350 of the
@@ -32,9 +29,7 @@ static void board_start_with_a_slow_processor(void)
 static void type_and_read(const char *typed, const char *answer)
 {
     answer = by_role(answer);
-    size_t before = board.note_count;
-    board_type(typed);
-    board_run_ms(150);
+    size_t before = talk_typed(typed, 150);
     TEST_ASSERT_TRUE_MESSAGE(board.note_count > before, typed);
     TEST_ASSERT_EQUAL_STRING(answer, board.notes[before]);
 }
@@ -59,7 +54,7 @@ static void type_filter(filter_kind_t kind)
     type_and_read(typed, answer);
 }
 
-static void test_a_filter_too_slow_for_the_rate_is_refused(void)
+TEST(test_a_filter_too_slow_for_the_rate_is_refused)
 {
     board_start_with_a_slow_processor();
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
@@ -79,7 +74,7 @@ static void test_a_filter_too_slow_for_the_rate_is_refused(void)
     type_and_read("filter {slowest}", "# filter {slowest}");
 }
 
-static void test_a_rate_too_fast_for_the_filter_is_refused(void)
+TEST(test_a_rate_too_fast_for_the_filter_is_refused)
 {
     board_start_with_a_slow_processor();
     type_and_read("filter {slowest}", "# filter {slowest}");
@@ -95,13 +90,12 @@ static void test_a_rate_too_fast_for_the_filter_is_refused(void)
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
     hal_host_cpu_hz = 5000000; /* not even the rest of a sample's way */
     type_and_read("filter {light}", "# refused 5: takes 2235 of 0 cycles a sample");
-    board_type("status");
-    board_run_ms(300);
+    (void)talk_typed("status", 300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("lines refused 3", before));
 }
 
 /* On this board: what starts is allowed, what is refused. */
-static void test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_hz(void)
+TEST(test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_hz)
 {
     board_start_resting();
     TEST_ASSERT_TRUE(settings_fit(settings()->choice.filter, settings()->rate_dhz));
@@ -123,12 +117,10 @@ static void test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_
 }
 
 /* At 1,000,000 baud the line carries every row at 800 Hz; the filter leaves time for one in several. */
-static void test_every_follows_what_the_filter_leaves_time_for(void)
+TEST(test_every_follows_what_the_filter_leaves_time_for)
 {
-    board_start_resting();
-    board_run_ms(200);
-    board_type("baud 1000000");
-    board_run_ms(100);
+    talk_start();
+    (void)talk_typed("baud 1000000", 100);
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
         char typed[32], answer[96];
@@ -143,22 +135,11 @@ static void test_every_follows_what_the_filter_leaves_time_for(void)
         size_t before = board.note_count;
         snprintf(typed, sizeof typed, "filter %s", filter_listed_name((filter_kind_t)kind));
         snprintf(answer, sizeof answer, "# every %u: the least for this filter", every);
-        board_type(typed);
-        board_run_ms(150);
+        (void)talk_typed(typed, 150);
         TEST_ASSERT_EQUAL_UINT16(every, settings_every_in_force());
         TEST_ASSERT_EQUAL_size_t(every == 1 ? 0 : 1, board_notes_with(answer, before));
         TEST_ASSERT_EQUAL_size_t(before + (every == 1 ? 1 : 2), board.note_count);
     }
     type_and_read("rate 100", "# rate 100 Hz, I2C at 363.6 kHz");
     TEST_ASSERT_EQUAL_UINT16(1, settings_every_in_force());
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_filter_too_slow_for_the_rate_is_refused);
-    RUN_TEST(test_a_rate_too_fast_for_the_filter_is_refused);
-    RUN_TEST(test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_hz);
-    RUN_TEST(test_every_follows_what_the_filter_leaves_time_for);
-    return UNITY_END();
 }

@@ -9,19 +9,10 @@
 #include "settings/settings_table.h"
 #include "support/roles.h"
 #include "support/talk.h"
-#include "unity.h"
-
-static stream_t stream;
-
-void setUp(void) {}
-
-void tearDown(void)
-{
-    stream_free(&stream);
-}
+#include "support/test.h"
 
 /* R at 100 Hz: 1.5 x 0.02 x 100 = 3 LSB^2. */
-static void test_parameters_are_shown_set_and_refused(void)
+TEST(test_parameters_are_shown_set_and_refused)
 {
     static const struct {
         const char *typed, *answer;
@@ -57,7 +48,7 @@ static void test_parameters_are_shown_set_and_refused(void)
     }
 }
 
-static void test_an_unknown_filter_is_refused_with_the_list(void)
+TEST(test_an_unknown_filter_is_refused_with_the_list)
 {
     char answer[200] = "# refused 4: filter is one of";
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
@@ -80,13 +71,13 @@ static double roughness(size_t from)
 }
 
 /* A Kalman filter's gain follows q / R. R as set, not as estimated: 1000 for a noise of 2 LSB smooths far more. */
-static void test_parameters_reach_the_filter(void)
+TEST(test_parameters_reach_the_filter)
 {
     static const char *const typed[] = {
         "filter {plain}", "r 1000", "r 0.1", "q 1", "filter {robust}", "filter {plain}"
     };
     double rough[6];
-    stream = board_noisy_stream(2000, 100.0, 2.0, 7);
+    stream_t stream = board_noisy_stream(2000, 100.0, 2.0, 7);
     board_start(&stream, 0.0, 0);
     talk_type("offset 5 0 0");
     for (size_t i = 0; i < 6; i++) {
@@ -104,7 +95,7 @@ static void test_parameters_reach_the_filter(void)
 }
 
 /* No parameter of one filter is taken for one of another while the pipeline changes. */
-static void test_changes_in_quick_succession(void)
+TEST(test_changes_in_quick_succession)
 {
     talk_start();
     size_t before = board.note_count;
@@ -121,15 +112,14 @@ static void test_changes_in_quick_succession(void)
 }
 
 /* Each line names a setting, its value and what is legal; each, typed as it is told, changes nothing. */
-static void test_the_listing_can_be_typed_again(void)
+TEST(test_the_listing_can_be_typed_again)
 {
     char listed[40][BOARD_NOTE_LENGTH];
     talk_start();
     talk_type("filter {robust}");
     talk_type("gate 3.37");
     talk_type("r 2.71");
-    size_t before = board.note_count;
-    talk_type("settings");
+    size_t before = talk_typed("settings", 400);
     size_t lines = board.note_count - before;
     TEST_ASSERT_EQUAL_size_t(SETTING_PARAMETERS + 5, lines);
     for (size_t i = 0; i < lines; i++) {
@@ -147,22 +137,20 @@ static void test_the_listing_can_be_typed_again(void)
         talk_type(line);
         TEST_ASSERT_EQUAL_STRING_LEN(listed[i], board.notes[reply], strcspn(listed[i], ":,"));
     }
-    before = board.note_count;
-    talk_type("settings");
+    before = talk_typed("settings", 400);
     for (size_t i = 0; i < lines; i++) {
         TEST_ASSERT_EQUAL_STRING(listed[i], board.notes[before + i]);
     }
 }
 
 /* The virtual sensor is at 0x53. */
-static void test_address(void)
+TEST(test_address)
 {
     talk_start();
     TEST_ASSERT_EQUAL_STRING("# address auto", talk_answer("address"));
     TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1D", talk_answer("address 54"));
     TEST_ASSERT_EQUAL_STRING("# refused 4: address is one of auto 53 1D", talk_answer("address 0x53"));
-    size_t before = board.note_count;
-    talk_type("address 1D");
+    size_t before = talk_typed("address 1D", 400);
     board_run_ms(1000);
     TEST_ASSERT_EQUAL_STRING("# address 1D", board.notes[before]);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1: ", before)); /* it is not looked for elsewhere */
@@ -182,7 +170,7 @@ static void test_address(void)
 }
 
 /* The speed is in force with the reply, is saved, and stands in the line of the rate. */
-static void test_i2c(void)
+TEST(test_i2c)
 {
     talk_start();
     TEST_ASSERT_EQUAL_STRING("# i2c auto", talk_answer("i2c"));
@@ -196,8 +184,7 @@ static void test_i2c(void)
     TEST_ASSERT_EQUAL_STRING("# rate 50 Hz, I2C at 100 kHz", talk_answer("rate"));
     TEST_ASSERT_EQUAL_STRING("# i2c 400", talk_answer("i2c 400"));
     TEST_ASSERT_EQUAL_STRING("# rate 50 Hz, I2C at 363.6 kHz", talk_answer("rate"));
-    size_t before = board.note_count;
-    talk_type("rate 800");
+    size_t before = talk_typed("rate 800", 400);
     TEST_ASSERT_EQUAL_STRING("# rate 800 Hz, I2C at 400 kHz", board.notes[before]);
     size_t rows = board.row_count;
     board_run_ms(1000);
@@ -209,9 +196,7 @@ static bool is_axes(char a, char b, char c)
     char line[16];
     snprintf(line, sizeof line, "axes %s%c%s%c%s%c", a < 'a' ? "-" : "", a < 'a' ? a + 32 : a, b < 'a' ? "-" : "",
              b < 'a' ? b + 32 : b, c < 'a' ? "-" : "", c < 'a' ? c + 32 : c);
-    size_t before = board.note_count;
-    board_type(line);
-    board_run_ms(60);
+    size_t before = talk_typed(line, 60);
     bool taken = strncmp(board.notes[before] + 2, line, strlen(line)) == 0;
     TEST_ASSERT_TRUE(taken || strncmp(board.notes[before], "# refused 4: axes is one of ", 28) == 0);
     return taken;
@@ -230,7 +215,7 @@ static int determinant(const char name[3])
 }
 
 /* Of 216 triples the 24 that are rotations. */
-static void test_axes(void)
+TEST(test_axes)
 {
     static const char letters[] = "xyzXYZ";
     int taken = 0;
@@ -248,9 +233,9 @@ static void test_axes(void)
 }
 
 /* The resting board reads (31, -53, 248): by hand what offsets, scales and axes make of it. */
-static void test_calibration_reaches_the_rows(void)
+TEST(test_calibration_reaches_the_rows)
 {
-    stream = board_constant_stream(200, 100.0, 31, -53, 248);
+    stream_t stream = board_constant_stream(200, 100.0, 31, -53, 248);
     board_start(&stream, 0.0, 0);
     board_run_ms(500);
     talk_type("offset 11 -3.5 -8");
@@ -291,16 +276,15 @@ static void test_calibration_reaches_the_rows(void)
 }
 
 /* What tare makes of a part that reads more than 1 g is told, and can be typed again: 264 / 256 = 1.03125. */
-static void test_a_level_of_more_than_1_g_can_be_typed_again(void)
+TEST(test_a_level_of_more_than_1_g_can_be_typed_again)
 {
-    stream = board_constant_stream(800, 100.0, 0, 0, 264);
+    stream_t stream = board_constant_stream(800, 100.0, 0, 0, 264);
     for (size_t i = 0; i < stream.count; i++) { /* else it is stuck */
         stream.rows[i].lsb[0] = i % 2 == 0 ? 1 : -1;
     }
     board_start(&stream, 0.0, 0);
     board_run_ms(300);
-    board_type("tare");
-    board_run_ms(4000);
+    (void)talk_typed("tare", 4000);
     TEST_ASSERT_EQUAL_INT16(16896, settings()->calibration.level_q14[2]); /* 264 / 256 */
     TEST_ASSERT_EQUAL_STRING("# level 0 0 1.0312: -1.1499 to 1.1499", board.notes[board.note_count - 2]);
     TEST_ASSERT_EQUAL_STRING("# level 0 0 1.0311: -1.1499 to 1.1499",
@@ -308,7 +292,7 @@ static void test_a_level_of_more_than_1_g_can_be_typed_again(void)
 }
 
 /* b0 0.05 is stable beside the b1 of 800 Hz (-0.0407), not beside that of 400 Hz (-0.0780): the sum is negative. */
-static void test_a_rate_at_which_the_parameters_do_not_go_together(void)
+TEST(test_a_rate_at_which_the_parameters_do_not_go_together)
 {
     char line[40];
     talk_start();
@@ -325,7 +309,7 @@ static void test_a_rate_at_which_the_parameters_do_not_go_together(void)
     }
 }
 
-static void test_numbers(void)
+TEST(test_numbers)
 {
     static const struct {
         const char *text;
@@ -361,22 +345,4 @@ static void test_numbers(void)
     uint32_t value;
     TEST_ASSERT_TRUE(number_parse(&rest, 0, &value));
     TEST_ASSERT_EQUAL_STRING("2", rest);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_parameters_are_shown_set_and_refused);
-    RUN_TEST(test_an_unknown_filter_is_refused_with_the_list);
-    RUN_TEST(test_parameters_reach_the_filter);
-    RUN_TEST(test_changes_in_quick_succession);
-    RUN_TEST(test_the_listing_can_be_typed_again);
-    RUN_TEST(test_address);
-    RUN_TEST(test_i2c);
-    RUN_TEST(test_axes);
-    RUN_TEST(test_calibration_reaches_the_rows);
-    RUN_TEST(test_a_level_of_more_than_1_g_can_be_typed_again);
-    RUN_TEST(test_a_rate_at_which_the_parameters_do_not_go_together);
-    RUN_TEST(test_numbers);
-    return UNITY_END();
 }

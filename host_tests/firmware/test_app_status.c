@@ -1,5 +1,4 @@
 /* What `status` says, judged by what was done to the bus and the sensor and by what the sensor did. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,17 +7,13 @@
 #include "adxl345_registers.h"
 #include "hal_i2c.h"
 #include "hal_sleep.h"
-#include "support/board.h"
-#include "unity.h"
+#include "support/talk.h"
+#include "support/test.h"
 
 enum {
     STATUS_LINES = 7,
     READ_BUS_EVENTS = 5
 }; /* START, address, register, repeated START, address: then the data come */
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* First lines of the newest reply to `status` and of the one before it: some counters go on from test to test. */
 static size_t newest;
@@ -27,9 +22,7 @@ static size_t before;
 static void ask(void)
 {
     before = newest;
-    newest = board.note_count;
-    board_type("status");
-    board_run_ms(200);
+    newest = talk_typed("status", 200);
     TEST_ASSERT_EQUAL_size_t(newest + STATUS_LINES, board.note_count);
     TEST_ASSERT_EQUAL_STRING_LEN("# state ", board.notes[newest], 8);
 }
@@ -81,7 +74,7 @@ static void disturb(uint8_t status, unsigned events)
     TEST_ASSERT_TRUE_MESSAGE(hal_host_faults.next_status < 0, "the disturbance has not happened");
 }
 
-static void test_failed_transfers_are_told_apart(void)
+TEST(test_failed_transfers_are_told_apart)
 {
     static const struct {
         uint8_t status, events, times;
@@ -115,7 +108,7 @@ static void test_failed_transfers_are_told_apart(void)
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault 3", 0));
 }
 
-static void test_a_calm_sensor_counts_nothing(void)
+TEST(test_a_calm_sensor_counts_nothing)
 {
     static const char *const names[] = { "clipped ",       "dropped ",  "lines refused ",    "lost ",
                                          "drained ",       "stuck ",    "restarts ",         "empty ",
@@ -146,7 +139,7 @@ static uint8_t corrupt(uint8_t reg, uint8_t byte)
     return byte ^ 0x04;
 }
 
-static void test_readings_that_were_none_are_told(void)
+TEST(test_readings_that_were_none_are_told)
 {
     stream_t stream = board_noisy_stream(1000, 100.0, 1.5, 21u);
     start(&stream, corrupt);
@@ -158,7 +151,6 @@ static void test_readings_that_were_none_are_told(void)
     ask();
     TEST_ASSERT_EQUAL_UINT(10, corrupted_reads);
     TEST_ASSERT_EQUAL_UINT(corrupted_reads, told("readings torn "));
-    stream_free(&stream);
 }
 
 static unsigned sources_with_overrun;
@@ -174,12 +166,11 @@ static uint8_t look_at_source(uint8_t reg, uint8_t byte)
 }
 
 /* Main stands still for longer than the FIFO is deep, or for less; what it reads late is drained. */
-static void test_overruns_are_told(void)
+TEST(test_overruns_are_told)
 {
     stream_t stream = board_noisy_stream(1000, 100.0, 1.5, 22u);
     start(&stream, look_at_source);
-    board_type("rate 200");
-    board_run_ms(100);
+    (void)talk_typed("rate 200", 100);
     ask();
     sources_with_overrun = 0;
     main_stands_still(100);
@@ -192,11 +183,10 @@ static void test_overruns_are_told(void)
     TEST_ASSERT_EQUAL_UINT(sources_with_overrun, told("overruns "));
     TEST_ASSERT_TRUE(told("drained ") >= 19 + 33 + 33);
     TEST_ASSERT_UINT_WITHIN(1, hal_host_sensor.overruns, told("lost ")); /* by the stamps, which are interpolated */
-    stream_free(&stream);
 }
 
 /* INT1 is held high: the sensor is looked at, and has nothing, again and again. */
-static void test_readings_without_a_sample_are_told(void)
+TEST(test_readings_without_a_sample_are_told)
 {
     stream_t stream = board_noisy_stream(1000, 100.0, 1.5, 23u);
     start(&stream, look_at_source);
@@ -209,21 +199,19 @@ static void test_readings_without_a_sample_are_told(void)
     /* those that only ask are none, and a sample may come behind INT_SOURCE */
     TEST_ASSERT_TRUE(told("empty ") >= 3 && told("empty ") <= sources_without_data);
     TEST_ASSERT_EQUAL_UINT(0, told("readings torn "));
-    stream_free(&stream);
 }
 
-static void test_stuck_samples_are_counted(void)
+TEST(test_stuck_samples_are_counted)
 {
     stream_t stream = board_hung_stream(1000, 11u, 300, 60);
     start(&stream, NULL);
     board_run_ms(5000);
     ask();
     TEST_ASSERT_EQUAL_UINT(60 - 9, told("stuck "));
-    stream_free(&stream);
 }
 
 /* Nobody has answered yet: there is no rate. */
-static void test_no_sensor_has_no_rate(void)
+TEST(test_no_sensor_has_no_rate)
 {
     board_start_resting();
     adxl345_model_power(&hal_host_sensor, false);
@@ -232,7 +220,7 @@ static void test_no_sensor_has_no_rate(void)
     TEST_ASSERT_NOT_NULL(strstr(board.notes[newest], "fault 1, rate 100 Hz, measured 0.00 Hz, uptime s 0"));
 }
 
-static void test_restarts_are_counted(void)
+TEST(test_restarts_are_counted)
 {
     start(NULL, NULL);
     for (unsigned n = 0; n < 4; n++) {
@@ -247,13 +235,12 @@ static void test_restarts_are_counted(void)
 }
 
 /* INT1 was away for some samples, or a slave hung: what has gathered is fetched, and no sample is lost from then on. */
-static void test_a_fifo_that_is_behind_is_fetched(void)
+TEST(test_a_fifo_that_is_behind_is_fetched)
 {
     static const char *const commands[] = { "rate 400", "rate 800" };
     for (unsigned i = 0; i < 4; i++) {
         start(NULL, NULL);
-        board_type(commands[i / 2]);
-        board_run_ms(500);
+        (void)talk_typed(commands[i / 2], 500);
         if (i % 2 == 0) {
             hal_host_faults.int1_cut = true;
             board_run_ms(10);
@@ -272,7 +259,7 @@ static void test_a_fifo_that_is_behind_is_fetched(void)
 }
 
 /* INT1 that came back is none: the sensor keeps its configuration. Nor is what a command asks for. */
-static void test_what_is_no_restart(void)
+TEST(test_what_is_no_restart)
 {
     start(NULL, NULL);
     board_run_ms(300);
@@ -282,14 +269,13 @@ static void test_what_is_no_restart(void)
     hal_host_faults.int1_cut = false;
     board_run_ms(300);
     TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_NONE, adxl345_fault());
-    board_type("rate 200");
-    board_run_ms(300);
+    (void)talk_typed("rate 200", 300);
     ask();
     TEST_ASSERT_EQUAL_UINT(0, told("restarts "));
 }
 
 /* The sensor's clock is off by up to 5 %: what is told is its rate, within 0.05 %, at every rate. */
-static void test_measured_rate(void)
+TEST(test_measured_rate)
 {
     static const char *const rates[] = { "12.5", "25", "50", "100", "200", "400", "800" };
     static const double ppm[] = { 0, 50000, -50000, 21634, -123 };
@@ -302,8 +288,7 @@ static void test_measured_rate(void)
             char begin[48];
             double true_hz = atof(rates[r]) * (1.0 + ppm[p] * 1e-6);
             snprintf(typed, sizeof typed, "rate %s", rates[r]);
-            board_type(typed);
-            board_run_ms(100.0 + 40e3 / true_hz);
+            (void)talk_typed(typed, 100.0 + 40e3 / true_hz);
             ask();
             const char *state = board.notes[newest];
             snprintf(begin, sizeof begin, "fault 0, rate %s Hz, measured ", rates[r]);
@@ -316,23 +301,5 @@ static void test_measured_rate(void)
             TEST_ASSERT_EQUAL_CHAR('.', end[-3]);
             TEST_ASSERT_DOUBLE_WITHIN(5e-4 * true_hz, true_hz, told_hz);
         }
-        stream_free(&stream);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_no_sensor_has_no_rate); /* first: the driver keeps what it has measured */
-    RUN_TEST(test_failed_transfers_are_told_apart);
-    RUN_TEST(test_a_calm_sensor_counts_nothing);
-    RUN_TEST(test_readings_that_were_none_are_told);
-    RUN_TEST(test_overruns_are_told);
-    RUN_TEST(test_readings_without_a_sample_are_told);
-    RUN_TEST(test_stuck_samples_are_counted);
-    RUN_TEST(test_restarts_are_counted);
-    RUN_TEST(test_what_is_no_restart);
-    RUN_TEST(test_a_fifo_that_is_behind_is_fetched);
-    RUN_TEST(test_measured_rate);
-    return UNITY_END();
 }

@@ -1,7 +1,6 @@
 /* What the user is told of a fault: its words and the LED. The numbers: test_app_outage.c. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "adxl345.h"
@@ -9,13 +8,9 @@
 #include "base/notices.h"
 #include "base/text.h"
 #include "path/pipeline.h"
-#include "support/board.h"
 #include "support/documented_limits.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/talk.h"
+#include "support/test.h"
 
 /*
  * One pattern of 2^20 us, begun in its dark part: so many flashes of 65.5 ms. main looks every 8.2 ms at the latest, so
@@ -41,7 +36,7 @@ static void assert_led_flashes(unsigned times)
     TEST_ASSERT_DOUBLE_WITHIN(10.0 * times, (LIMIT_LED_MS + 0.5) * times, lit_ms);
 }
 
-static void test_led_flashes_by_what_to_look_at(void)
+TEST(test_led_flashes_by_what_to_look_at)
 {
     board_start_resting();
     board_run_ms(500);
@@ -64,7 +59,7 @@ static void test_led_flashes_by_what_to_look_at(void)
 }
 
 /* Every code has words, also those that only a real sensor or bus can bring about. */
-static void test_each_fault_has_its_words(void)
+TEST(test_each_fault_has_its_words)
 {
     board_start_resting();
     board_run_ms(500);
@@ -81,26 +76,23 @@ static void test_each_fault_has_its_words(void)
 }
 
 /* A change of rate stops the sensor for a moment: no sample is missing. */
-static void test_a_change_of_rate_loses_nothing(void)
+TEST(test_a_change_of_rate_loses_nothing)
 {
     board_start_resting();
     board_run_ms(500);
-    board_type("rate 200");
-    board_run_ms(500);
-    board_type("range 4");
-    board_run_ms(500);
+    (void)talk_typed("rate 200", 500);
+    (void)talk_typed("range 4", 500);
     TEST_ASSERT_EQUAL_UINT32(0, counted(COUNT_LOST));
 }
 
 /* What is missing of a second at the new rate: the old one ends with its command. */
-static void test_a_change_of_rate_in_an_outage_forgets_no_sample(void)
+TEST(test_a_change_of_rate_in_an_outage_forgets_no_sample)
 {
     board_start_resting();
     board_run_ms(500);
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(500);
-    board_type("rate 200");
-    board_run_ms(500);
+    (void)talk_typed("rate 200", 500);
     adxl345_model_power(&hal_host_sensor, true);
     board_run_ms(500);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1 over", 0));
@@ -118,7 +110,7 @@ static stream_t two_sensors(void)
 }
 
 /* A command configures the sensor anew, which mends neither its wires nor itself: nothing is over by it. */
-static void test_a_command_does_not_call_a_lasting_fault_over(void)
+TEST(test_a_command_does_not_call_a_lasting_fault_over)
 {
     static const uint8_t faults[] = { ADXL345_FAULT_INT1_STUCK, ADXL345_FAULT_STUCK, ADXL345_FAULT_TWO_SENSORS };
     static const char *const commands[] = { "rate 50", "range 8", "rate 100" };
@@ -131,23 +123,19 @@ static void test_a_command_does_not_call_a_lasting_fault_over(void)
         TEST_ASSERT_EQUAL_UINT(faults[i], adxl345_fault());
         size_t before = board.note_count;
         for (size_t k = 0; k < sizeof commands / sizeof commands[0]; k++) {
-            board_type(commands[k]);
-            board_run_ms(700);
+            (void)talk_typed(commands[k], 700);
             TEST_ASSERT_EQUAL_UINT_MESSAGE(faults[i], adxl345_fault(), commands[k]);
         }
         TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault", before));
-        board_type("stop");
-        board_run_ms(200);
-        board_type("go");
-        board_run_ms(700);
+        (void)talk_typed("stop", 200);
+        (void)talk_typed("go", 700);
         TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault", before)); /* told again behind the stop */
-        stream_free(&stream);
     }
 }
 
 /* What repeats, or holds INT1, may have been taken away with the supply: no suspicion is left. */
-static void test_a_sensor_that_was_away_is_not_suspected(void)
+TEST(test_a_sensor_that_was_away_is_not_suspected)
 {
     stream_t stream = board_hung_stream(8000, 5u, 100, 110);
     board_start(&stream, 0.0, 0);
@@ -162,17 +150,4 @@ static void test_a_sensor_that_was_away_is_not_suspected(void)
         TEST_ASSERT_EQUAL_UINT(0, board.rows[row].flags & ROW_STUCK);
     }
     TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_NONE, adxl345_fault());
-    stream_free(&stream);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_led_flashes_by_what_to_look_at);
-    RUN_TEST(test_each_fault_has_its_words);
-    RUN_TEST(test_a_change_of_rate_loses_nothing);
-    RUN_TEST(test_a_change_of_rate_in_an_outage_forgets_no_sample);
-    RUN_TEST(test_a_command_does_not_call_a_lasting_fault_over);
-    RUN_TEST(test_a_sensor_that_was_away_is_not_suspected);
-    return UNITY_END();
 }

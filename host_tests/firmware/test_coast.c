@@ -13,9 +13,10 @@
 #include "settings/settings.h"
 #include "support/documented_limits.h"
 #include "support/filters.h"
+#include "support/path.h"
 #include "support/random.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/test.h"
 
 #define DEGREES (3.14159265358979323846 / 180.0)
 #define NOISE_LSB_PER_ROOT_HZ 0.141 /* of real boards, docs/results/recordings.md; z 1.3 times */
@@ -42,8 +43,6 @@ void setUp(void)
     random_seed(&world.random, SEED);
 }
 
-void tearDown(void) {}
-
 static void take_row(void)
 {
     world.before = world.row;
@@ -62,15 +61,7 @@ static void begin(uint8_t kind, uint16_t rate_dhz, double slope)
     world.t_us = 4294900000u; /* wraps in the first second */
     world.slope = slope;
     world.roll_deg = ROLL_CDEG / 100.0;
-    counters_start();
-    coast_wait(world.t_us);
-    pipeline_reset();
-    settings_defaults();
-    pipeline_calibrate(&settings()->calibration);
-    settings_take_filter(kind);
-    pipeline_forget();
-    pipeline_change(&settings()->choice, rate_dhz, 16);
-    pipeline_finish();
+    path_start(kind, rate_dhz, 16, world.t_us);
 }
 
 static bool missing_by(uint32_t t_us, bool sample)
@@ -139,7 +130,7 @@ static bool rate_is_a_difference(uint8_t kind)
 }
 
 /* At rest. Those whose rate is a difference jump as far from any row to the next: a gap must not add to it. */
-static void test_no_jump_at_rest_when_data_return(void)
+TEST(test_no_jump_at_rest_when_data_return)
 {
     static const uint16_t rates_dhz[] = { 125, 1000, 4000, 8000 };
     static const unsigned gaps_ms[] = { 20, 40, 90, 120, 300, 1000, 5000, 60000 };
@@ -187,7 +178,7 @@ static void assert_rejoins(uint8_t kind, uint16_t rate_dhz, unsigned missing)
     TEST_ASSERT_LESS_OR_EQUAL_UINT_MESSAGE((held ? 1u : 0u) + own, gated, about(kind, missing));
 }
 
-static void test_gaps_on_a_ramp_are_rejoined_within_the_gate(void)
+TEST(test_gaps_on_a_ramp_are_rejoined_within_the_gate)
 {
     FOR_EACH_FILTER(kind)
     {
@@ -209,7 +200,7 @@ static double part_of_step(unsigned n)
 }
 
 /* 60 degrees a second, no noise. At 100 Hz that is within the noise of a rate that is a difference. */
-static void test_rate_is_halved_every_25_ms_and_then_held(void)
+TEST(test_rate_is_halved_every_25_ms_and_then_held)
 {
     FOR_EACH_FILTER(kind)
     {
@@ -231,7 +222,7 @@ static void test_rate_is_halved_every_25_ms_and_then_held(void)
 }
 
 /* Each has its row: at the time that it would have had, flag 2, from the third on 16; after a second ten a second. */
-static void test_rows_of_missing_samples(void)
+TEST(test_rows_of_missing_samples)
 {
     begin(0, 4000, 0.0);
     samples(400);
@@ -253,7 +244,7 @@ static void test_rows_of_missing_samples(void)
 }
 
 /* Whether main looked in time or comes when the sample is there: the same rows, up to the hold. */
-static void test_rows_do_not_depend_on_when_main_looks(void)
+TEST(test_rows_do_not_depend_on_when_main_looks)
 {
     row_t rows[2];
     FOR_EACH_FILTER(kind)
@@ -277,7 +268,7 @@ static void test_rows_do_not_depend_on_when_main_looks(void)
 }
 
 /* Behind 120 ms the rows that nobody wrote are left out, but for the one that begins the hold. */
-static void test_a_sample_behind_a_long_gap_is_not_kept_waiting(void)
+TEST(test_a_sample_behind_a_long_gap_is_not_kept_waiting)
 {
     begin(0, 1000, 0.0);
     samples(300);
@@ -288,7 +279,7 @@ static void test_a_sample_behind_a_long_gap_is_not_kept_waiting(void)
     TEST_ASSERT_EQUAL_HEX16(0, world.row.flags);
 }
 
-static void test_samples_older_than_the_newest_row_are_dropped(void)
+TEST(test_samples_older_than_the_newest_row_are_dropped)
 {
     begin(0, 1000, 0.0);
     samples(100);
@@ -305,7 +296,7 @@ static void test_samples_older_than_the_newest_row_are_dropped(void)
 }
 
 /* Rows without samples begin 0.1 s after the start, but not where the first sample is just being read. */
-static void test_no_row_in_the_place_of_a_first_sample_on_its_way(void)
+TEST(test_no_row_in_the_place_of_a_first_sample_on_its_way)
 {
     begin(0, 1000, 0.0);
     uint32_t late_us = world.t_us + 100001u;
@@ -315,7 +306,7 @@ static void test_no_row_in_the_place_of_a_first_sample_on_its_way(void)
 }
 
 /* One bad reading is all that comes back from a hold: refused, and the filter goes on from what was held. */
-static void test_a_bad_reading_behind_a_hold_begins_nothing(void)
+TEST(test_a_bad_reading_behind_a_hold_begins_nothing)
 {
     FOR_EACH_FILTER(kind)
     {
@@ -345,7 +336,7 @@ static void sample_of_y(int16_t y_lsb)
 }
 
 /* 30 seconds at the rail of 16 g, with a hold in the midst: the rows say so, and no filter begins anew on one. */
-static void test_no_filter_begins_anew_at_the_rail(void)
+TEST(test_no_filter_begins_anew_at_the_rail)
 {
     FOR_EACH_FILTER(kind)
     {
@@ -360,20 +351,4 @@ static void test_no_filter_begins_anew_at_the_rail(void)
                                             about(kind, k));
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_no_row_in_the_place_of_a_first_sample_on_its_way);
-    RUN_TEST(test_no_jump_at_rest_when_data_return);
-    RUN_TEST(test_gaps_on_a_ramp_are_rejoined_within_the_gate);
-    RUN_TEST(test_rate_is_halved_every_25_ms_and_then_held);
-    RUN_TEST(test_rows_of_missing_samples);
-    RUN_TEST(test_rows_do_not_depend_on_when_main_looks);
-    RUN_TEST(test_a_sample_behind_a_long_gap_is_not_kept_waiting);
-    RUN_TEST(test_samples_older_than_the_newest_row_are_dropped);
-    RUN_TEST(test_a_bad_reading_behind_a_hold_begins_nothing);
-    RUN_TEST(test_no_filter_begins_anew_at_the_rail);
-    return UNITY_END();
 }

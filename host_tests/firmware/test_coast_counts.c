@@ -3,24 +3,15 @@
 #include "path/coast.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
-#include "unity.h"
+#include "support/path.h"
+#include "support/test.h"
 
 enum { PERIOD_US = 10000, LOOK_US = 4000, START_US = 1000000 };
 
 void setUp(void)
 {
-    counters_start();
-    pipeline_reset();
-    settings_defaults();
-    pipeline_calibrate(&settings()->calibration);
-    settings_take_filter(0);
-    pipeline_forget();
-    pipeline_change(&settings()->choice, 1000, 16);
-    pipeline_finish();
-    coast_wait(START_US);
+    path_start(0, 1000, 16, START_US);
 }
-
-void tearDown(void) {}
 
 static bool row_by(uint32_t t_us)
 {
@@ -41,7 +32,7 @@ static bool sample_at(uint32_t t_us)
 }
 
 /* The first sample may have waited in the sensor while rows went out that no sample came for. */
-static void test_a_first_sample_older_than_the_newest_row_is_dropped(void)
+TEST(test_a_first_sample_older_than_the_newest_row_is_dropped)
 {
     TEST_ASSERT_TRUE(row_by(START_US + 100001u));
     uint32_t newest_us = pipeline_newest_us();
@@ -52,7 +43,7 @@ static void test_a_first_sample_older_than_the_newest_row_is_dropped(void)
 }
 
 /* A sample that comes after its row is late, not lost: what is missing after it is counted from it, jitter or not. */
-static void test_after_a_late_sample_only_the_missing_ones_are_lost(void)
+TEST(test_after_a_late_sample_only_the_missing_ones_are_lost)
 {
     for (uint32_t missing = 0; missing <= 4; missing++) {
         for (int32_t early_us = -4000; early_us <= 4000; early_us += 2000) {
@@ -71,7 +62,7 @@ static void test_after_a_late_sample_only_the_missing_ones_are_lost(void)
 }
 
 /* What is missing before a sample that comes after its row is lost, whether the outage was short or long. */
-static void test_what_is_missing_before_a_late_sample_is_lost(void)
+TEST(test_what_is_missing_before_a_late_sample_is_lost)
 {
     for (uint32_t missing = 0; missing <= 5; missing++) {
         setUp();
@@ -91,7 +82,7 @@ static void test_what_is_missing_before_a_late_sample_is_lost(void)
  * More than half of what the clock of the samples counts, which wraps meanwhile; the last ones more than it counts.
  * Less than one sample for each 18 minutes is rounded off.
  */
-static void test_samples_lost_in_a_long_outage_are_counted(void)
+TEST(test_samples_lost_in_a_long_outage_are_counted)
 {
     static const uint32_t missing[] = { 3, 100, 214000, 216000, 420000, 429497, 640000, 1300000 };
     uint32_t t_us = START_US;
@@ -111,14 +102,4 @@ static void test_samples_lost_in_a_long_outage_are_counted(void)
         TEST_ASSERT_UINT32_WITHIN(rounded_off, sum, counted(COUNT_LOST));
         TEST_ASSERT_TRUE(counted(COUNT_LOST) <= sum);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_first_sample_older_than_the_newest_row_is_dropped);
-    RUN_TEST(test_after_a_late_sample_only_the_missing_ones_are_lost);
-    RUN_TEST(test_what_is_missing_before_a_late_sample_is_lost);
-    RUN_TEST(test_samples_lost_in_a_long_outage_are_counted);
-    return UNITY_END();
 }

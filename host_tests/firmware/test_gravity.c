@@ -14,9 +14,10 @@
 #include "path/gravity.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
-#include "support/board.h"
 #include "support/documented_limits.h"
-#include "unity.h"
+#include "support/path.h"
+#include "support/talk.h"
+#include "support/test.h"
 
 enum { STARTS_S = 1 }; /* the first second warms up */
 
@@ -26,21 +27,6 @@ static stream_t stream;
 void setUp(void)
 {
     t_us = 0;
-}
-
-void tearDown(void) {}
-
-static void begin(void)
-{
-    counters_start();
-    coast_wait(0);
-    pipeline_reset();
-    settings_defaults();
-    pipeline_calibrate(&settings()->calibration);
-    settings_take_filter(0);
-    pipeline_forget();
-    pipeline_change(&settings()->choice, 1000, 16);
-    pipeline_finish();
 }
 
 static void sample(int16_t x_lsb, int16_t y_lsb, int16_t z_lsb)
@@ -66,9 +52,9 @@ static void seconds(int many, int16_t z_lsb, uint16_t flags)
     }
 }
 
-static void test_ten_seconds_at_rest_and_the_first_within(void)
+TEST(test_ten_seconds_at_rest_and_the_first_within)
 {
-    begin();
+    path_start(0, 1000, 16, 0);
     seconds(STARTS_S + LIMIT_NO_GRAVITY_S - 1, 20, 0);
     TEST_ASSERT_FALSE(gravity_absent());
     seconds(1, 20, 0);
@@ -89,7 +75,7 @@ static void test_ten_seconds_at_rest_and_the_first_within(void)
 
 static bool lacks(int16_t x_lsb, int16_t y_lsb, int16_t z_lsb)
 {
-    begin();
+    path_start(0, 1000, 16, 0);
     for (int k = 0; k < STARTS_S + LIMIT_NO_GRAVITY_S; k++) {
         for (int i = 0; i < 100; i++) {
             sample(x_lsb, y_lsb, z_lsb);
@@ -99,7 +85,7 @@ static bool lacks(int16_t x_lsb, int16_t y_lsb, int16_t z_lsb)
     return gravity_absent();
 }
 
-static void test_the_limits_on_every_axis(void)
+TEST(test_the_limits_on_every_axis)
 {
     static const int limits_lsb[] = { LIMIT_GRAVITY_LEAST_LSB, LIMIT_GRAVITY_MOST_LSB };
     for (size_t i = 0; i < 2; i++) {
@@ -120,11 +106,11 @@ static void test_the_limits_on_every_axis(void)
 }
 
 /* Neither counted nor a break: it is not known what the sensor read. */
-static void test_a_second_with_disturbed_samples_proves_nothing(void)
+TEST(test_a_second_with_disturbed_samples_proves_nothing)
 {
     static const uint16_t flags[] = { ROW_COASTED, ROW_COASTED | ROW_FAULT, ROW_STUCK, ROW_CLIPPED, ROW_WARMING_UP };
     for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++) {
-        begin();
+        path_start(0, 1000, 16, 0);
         seconds(STARTS_S + LIMIT_NO_GRAVITY_S - 1, 20, 0);
         seconds(3 * LIMIT_NO_GRAVITY_S, 20, flags[i]);
         TEST_ASSERT_FALSE(gravity_absent());
@@ -136,9 +122,9 @@ static void test_a_second_with_disturbed_samples_proves_nothing(void)
     }
 }
 
-static void test_seconds_without_samples_prove_nothing(void)
+TEST(test_seconds_without_samples_prove_nothing)
 {
-    begin();
+    path_start(0, 1000, 16, 0);
     seconds(STARTS_S + 1, 20, 0);
     for (int k = 0; k < 3 * LIMIT_NO_GRAVITY_S; k++) {
         pipeline_second(10000);
@@ -147,9 +133,9 @@ static void test_seconds_without_samples_prove_nothing(void)
 }
 
 /* As on a wheel that turns: it does not read gravity, but is not at rest. */
-static void test_a_second_that_moves_restarts_the_ten(void)
+TEST(test_a_second_that_moves_restarts_the_ten)
 {
-    begin();
+    path_start(0, 1000, 16, 0);
     for (int k = 0; k < 5; k++) {
         seconds(LIMIT_NO_GRAVITY_S, 20, 0); /* the first of them moves, or warms up */
         TEST_ASSERT_FALSE(gravity_absent());
@@ -167,7 +153,6 @@ static const char last_line[] = "# fault 14 over: after ";
 /* A sensor that reads z at rest, with the noise of a desk, for so many milliseconds. */
 static void start(int16_t z_lsb, double ms)
 {
-    stream_free(&stream);
     stream = board_noisy_stream(1000, 100.0, 1.0, 1401u);
     for (size_t i = 0; i < stream.count; i++) {
         stream.rows[i].lsb[0] = (int16_t)(stream.rows[i].lsb[0] - 31);
@@ -202,7 +187,7 @@ static void assert_lines(size_t first, size_t last)
     TEST_ASSERT_EQUAL_size_t(last, board_notes_with(last_line, 0));
 }
 
-static void test_it_is_reported_once_and_ends_with_its_length(void)
+TEST(test_it_is_reported_once_and_ends_with_its_length)
 {
     start(20, 10000);
     assert_lines(0, 0);
@@ -210,8 +195,7 @@ static void test_it_is_reported_once_and_ends_with_its_length(void)
     board_run_ms(3000);
     assert_lines(1, 0);
     TEST_ASSERT_EQUAL_UINT8(FAULT_OTHER_PART, sensor_watch_fault());
-    board_type("status");
-    board_run_ms(20000);
+    (void)talk_typed("status", 20000);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", fault 14, ", 0));
     assert_lines(1, 0);
     move_z(236);
@@ -227,7 +211,7 @@ static void test_it_is_reported_once_and_ends_with_its_length(void)
     TEST_ASSERT_EQUAL_HEX(0x53, address);
 }
 
-static void test_the_drivers_faults_begin_and_end_meanwhile(void)
+TEST(test_the_drivers_faults_begin_and_end_meanwhile)
 {
     start(20, 13000);
     assert_lines(1, 0);
@@ -245,72 +229,64 @@ static void test_the_drivers_faults_begin_and_end_meanwhile(void)
 }
 
 /* Both end during a plot, so that both lines are due at once: each has its own numbers. */
-static void test_the_ends_of_two_faults_do_not_mix(void)
+TEST(test_the_ends_of_two_faults_do_not_mix)
 {
     start(20, 13000);
     adxl345_model_power(&hal_host_sensor, false);
     board_run_ms(300);
-    board_type("mode plot");
-    board_run_ms(200);
+    (void)talk_typed("mode plot", 200);
     adxl345_model_power(&hal_host_sensor, true);
     move_z(236);
     board_run_ms(5000);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over: after", 0));
-    board_type("mode csv");
-    board_run_ms(1000);
+    (void)talk_typed("mode csv", 1000);
     assert_lines(1, 1);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1 over: after 5", 0));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("000 ms, 0 lost, sensor at 0x53", 0));
     TEST_ASSERT_EQUAL_size_t(2, board_notes_with("over: after", 0));
 }
 
-static void test_nothing_is_reported_in_a_plot(void)
+TEST(test_nothing_is_reported_in_a_plot)
 {
     start(20, 300);
-    board_type("mode plot");
-    board_run_ms(500);
+    (void)talk_typed("mode plot", 500);
     size_t before = board.note_count;
     board_run_ms(15000);
     TEST_ASSERT_EQUAL_UINT8(FAULT_OTHER_PART, sensor_watch_fault());
     for (size_t i = before; i < board.note_count; i++) {
         TEST_ASSERT_NULL(strchr(board.notes[i], '#'));
     }
-    board_type("mode csv");
-    board_run_ms(1000);
+    (void)talk_typed("mode csv", 1000);
     assert_lines(1, 0);
 }
 
-static void test_stop_and_go_leave_it_as_it_is(void)
+TEST(test_stop_and_go_leave_it_as_it_is)
 {
     start(20, 13000);
-    board_type("stop");
-    board_run_ms(20000);
+    (void)talk_typed("stop", 20000);
     assert_lines(1, 0);
     TEST_ASSERT_EQUAL_UINT8(FAULT_OTHER_PART, sensor_watch_fault());
     TEST_ASSERT_EQUAL_STRING("# stopped", board_last_note());
-    board_type("go");
-    board_run_ms(14000);
+    (void)talk_typed("go", 14000);
     TEST_ASSERT_EQUAL_UINT8(FAULT_OTHER_PART, sensor_watch_fault());
     assert_lines(1, 0);
 }
 
-static void test_measurements_neither_count_nor_forget(void)
+TEST(test_measurements_neither_count_nor_forget)
 {
     static const char *const commands[] = { "selftest", "noise", "tare", "cal" };
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
         start(20, 7300);
-        board_type(commands[i]);
-        board_run_ms(8000);
+        (void)talk_typed(commands[i], 8000);
         assert_lines(1, 0);
-        board_type(commands[i]);
-        board_run_ms(8000);
+        (void)talk_typed(commands[i], 8000);
         TEST_ASSERT_EQUAL_UINT8(FAULT_OTHER_PART, sensor_watch_fault());
         assert_lines(1, 0);
     }
 }
 
 /* A full queue of notices refuses the line: it is told when there is room, and so is the end. */
-static void test_a_full_queue_delays_the_lines_alone(void)
+TEST(test_a_full_queue_delays_the_lines_alone)
 {
     start(20, 10000);
     fill_for_ms(3000);
@@ -325,7 +301,7 @@ static void test_a_full_queue_delays_the_lines_alone(void)
 }
 
 /* Wires off and on again, values that hang, and a stop: all with a sound sensor. */
-static void test_a_sound_sensor_is_never_accused(void)
+TEST(test_a_sound_sensor_is_never_accused)
 {
     static const int16_t z_lsb[] = { 256 + 64, 256 - 64, -256 - 64, -256 + 64 };
     for (size_t i = 0; i < sizeof z_lsb / sizeof z_lsb[0]; i++) {
@@ -336,30 +312,13 @@ static void test_a_sound_sensor_is_never_accused(void)
             adxl345_model_power(&hal_host_sensor, true);
             board_run_ms(1300 + outage * 171);
         }
-        board_type("stop");
-        board_run_ms(15000);
-        board_type("go");
-        board_run_ms(15000);
+        (void)talk_typed("stop", 15000);
+        (void)talk_typed("go", 15000);
         assert_lines(0, 0);
     }
 }
 
 int main(void)
 {
-    UNITY_BEGIN();
-    RUN_TEST(test_ten_seconds_at_rest_and_the_first_within);
-    RUN_TEST(test_the_limits_on_every_axis);
-    RUN_TEST(test_a_second_with_disturbed_samples_proves_nothing);
-    RUN_TEST(test_seconds_without_samples_prove_nothing);
-    RUN_TEST(test_a_second_that_moves_restarts_the_ten);
-    RUN_TEST(test_it_is_reported_once_and_ends_with_its_length);
-    RUN_TEST(test_the_drivers_faults_begin_and_end_meanwhile);
-    RUN_TEST(test_the_ends_of_two_faults_do_not_mix);
-    RUN_TEST(test_nothing_is_reported_in_a_plot);
-    RUN_TEST(test_stop_and_go_leave_it_as_it_is);
-    RUN_TEST(test_measurements_neither_count_nor_forget);
-    RUN_TEST(test_a_full_queue_delays_the_lines_alone);
-    RUN_TEST(test_a_sound_sensor_is_never_accused);
-    stream_free(&stream);
-    return UNITY_END();
+    return test_all();
 }

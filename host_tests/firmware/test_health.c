@@ -9,7 +9,7 @@
 #include "hal_watchdog.h"
 #include "support/board.h"
 #include "support/documented_limits.h"
-#include "unity.h"
+#include "support/test.h"
 
 /* A pass of main takes 20 us on the host. */
 #define PASS_MS 0.021
@@ -69,7 +69,7 @@ static void assert_bitten_after_deadline(double deadline_ms)
 }
 
 /* The probe of the sensor has 3 ms. */
-static void test_a_driver_past_its_deadline_has_20_ms_of_grace(void)
+TEST(test_a_driver_past_its_deadline_has_20_ms_of_grace)
 {
     adxl345_start(&at_100_hz);
     TEST_ASSERT_EQUAL_UINT32(hal_time_us() + 3000u, adxl345_deadline_us());
@@ -77,7 +77,7 @@ static void test_a_driver_past_its_deadline_has_20_ms_of_grace(void)
 }
 
 /* The same with a deadline on the other side of the wrap of the microseconds. */
-static void test_grace_over_the_wrap_of_the_clock(void)
+TEST(test_grace_over_the_wrap_of_the_clock)
 {
     while (hal_time_us() > 0x80000000u && hal_host_now_ms() < 998.0) {
         health_driver_polled();
@@ -89,7 +89,7 @@ static void test_grace_over_the_wrap_of_the_clock(void)
 }
 
 /* A poll moves the deadline: without a sensor the driver tries again and again, which is healthy. */
-static void test_a_driver_that_is_polled_is_healthy(void)
+TEST(test_a_driver_that_is_polled_is_healthy)
 {
     adxl345_start(&at_100_hz);
     while (hal_host_now_ms() < 2000.0) {
@@ -102,7 +102,7 @@ static void test_a_driver_that_is_polled_is_healthy(void)
 }
 
 /* Its last deadline means nothing then. */
-static void test_a_stopped_driver_is_never_late(void)
+TEST(test_a_stopped_driver_is_never_late)
 {
     adxl345_start(&at_100_hz);
     adxl345_stop();
@@ -117,7 +117,7 @@ static void test_a_stopped_driver_is_never_late(void)
 }
 
 /* A main loop that does not poll it has no grace. */
-static void test_a_driver_that_nobody_polls_is_not_healthy(void)
+TEST(test_a_driver_that_nobody_polls_is_not_healthy)
 {
     double begun_ms = hal_host_now_ms();
     while (hal_host_watchdog_bite() == 0 && hal_host_now_ms() < 1000.0) {
@@ -127,7 +127,7 @@ static void test_a_driver_that_nobody_polls_is_not_healthy(void)
 }
 
 /* Samples that nobody takes wait in the queue: a pause of filtering excuses that for its own passes, no longer. */
-static void test_a_pause_of_filtering_ends_with_its_last_pass(void)
+TEST(test_a_pause_of_filtering_ends_with_its_last_pass)
 {
     enum { PAUSE = 100, EVERY_MS = 4 };
     double next_ms = 0.0;
@@ -153,16 +153,4 @@ static void test_a_pause_of_filtering_ends_with_its_last_pass(void)
     TEST_ASSERT_DOUBLE_WITHIN(PASS_MS, (PAUSE - 1) * EVERY_MS + LIMIT_WATCHDOG_MS, bitten_ms());
     hal_host_reset_mcu(HAL_RESET_WATCHDOG);
     TEST_ASSERT_EQUAL_HEX8(HEALTH_FILTERING, hal_reset_note());
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_driver_past_its_deadline_has_20_ms_of_grace);
-    RUN_TEST(test_grace_over_the_wrap_of_the_clock);
-    RUN_TEST(test_a_driver_that_is_polled_is_healthy);
-    RUN_TEST(test_a_stopped_driver_is_never_late);
-    RUN_TEST(test_a_driver_that_nobody_polls_is_not_healthy);
-    RUN_TEST(test_a_pause_of_filtering_ends_with_its_last_pass);
-    return UNITY_END();
 }

@@ -2,11 +2,9 @@
  * A main loop that is out of time after each piece of work does the same as one that has time for all: a sample, a row,
  * a reply, an axis of a change of filter a pass, each pass followed at once by the next.
  */
-#include <stdlib.h>
-#include <string.h>
 
-#include "support/board.h"
-#include "unity.h"
+#include "support/talk.h"
+#include "support/test.h"
 
 enum { SLOW = 2 }; /* counts a look: the third comes too late */
 
@@ -18,19 +16,13 @@ void setUp(void)
     stream = board_noisy_stream(500, 100.0, 1.5, 11u);
 }
 
-void tearDown(void)
-{
-    stream_free(&stream);
-}
-
 static void run(uint8_t lap_step, const char *const *lines, size_t count)
 {
     board_start(&stream, 0.0, 0);
     board_run_ms(300.0); /* the sensor's clock is the same in all runs */
     hal_host_faults.lap_step = lap_step;
     for (size_t i = 0; i < count; i++) {
-        board_type(lines[i]);
-        board_run_ms(400.0);
+        (void)talk_typed(lines[i], 400.0);
     }
     board_run_ms(3000.0); /* rows are held for a person who reads */
 }
@@ -60,7 +52,7 @@ static void assert_same(void)
     }
 }
 
-static void test_samples_and_replies_in_pieces(void)
+TEST(test_samples_and_replies_in_pieces)
 {
     static const char *const lines[] = { "help", "status", "every 2", "nonsense" };
     run(0, lines, 3);
@@ -70,7 +62,7 @@ static void test_samples_and_replies_in_pieces(void)
 }
 
 /* The filters go on from the same output; which sample meets the new ones first is the same at 100 Hz. */
-static void test_changes_in_pieces(void)
+TEST(test_changes_in_pieces)
 {
     static const char *const lines[] = { "filter {robust}", "filter {plain}", "filter {light}", "filter {default}" };
     run(0, lines, 4);
@@ -80,7 +72,7 @@ static void test_changes_in_pieces(void)
 }
 
 /* A line that is being spoken tells of one rate, not of the next one's bus. */
-static void test_a_command_waits_for_the_line_before(void)
+TEST(test_a_command_waits_for_the_line_before)
 {
     board_start(&stream, 0.0, 0);
     board_run_ms(300.0);
@@ -92,13 +84,4 @@ static void test_a_command_waits_for_the_line_before(void)
     board_run_ms(400.0);
     TEST_ASSERT_EQUAL_STRING("# rate 100 Hz, I2C at 363.6 kHz", board.notes[before]);
     TEST_ASSERT_EQUAL_STRING("# rate 800 Hz, I2C at 400 kHz", board.notes[before + 1]);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_samples_and_replies_in_pieces);
-    RUN_TEST(test_changes_in_pieces);
-    RUN_TEST(test_a_command_waits_for_the_line_before);
-    return UNITY_END();
 }

@@ -3,7 +3,7 @@
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { SAMPLES = 200, RANGE_G = 16 };
 
@@ -21,8 +21,6 @@ void setUp(void)
     pipeline_finish();
 }
 
-void tearDown(void) {}
-
 /* One reading for 2 s: every filter has it then. */
 static row_t row_of(int x, int y, int z)
 {
@@ -39,7 +37,7 @@ static row_t row_of(int x, int y, int z)
 }
 
 /* 1000 x 256/265 = 966.04 mg and 256 LSB less an offset of 20: 921.875; the readings stay as they were read. */
-static void test_mg_are_calibrated_and_readings_are_not(void)
+TEST(test_mg_are_calibrated_and_readings_are_not)
 {
     c.scale_lsb_per_g_uq6[0] = CALIBRATION_SCALE_3V3_XY_UQ6;
     c.offset_lsb_q4[2] = 320;
@@ -53,7 +51,7 @@ static void test_mg_are_calibrated_and_readings_are_not(void)
 }
 
 /* (0, 3, 4) / 5 g with y and z changed and x reversed: roll atan2(4, 3) = 53.13 degrees in place of 36.87. */
-static void test_angles_are_those_of_the_axes_named_anew(void)
+TEST(test_angles_are_those_of_the_axes_named_anew)
 {
     row_t row = row_of(0, 154, 205);
     TEST_ASSERT_INT16_WITHIN(3, 3691, row.roll_cdeg); /* atan(154 / 205) = 36.914 */
@@ -69,7 +67,7 @@ static void test_angles_are_those_of_the_axes_named_anew(void)
 }
 
 /* Tared on its side, that attitude is level, raw and filtered. */
-static void test_a_tared_attitude_is_level(void)
+TEST(test_a_tared_attitude_is_level)
 {
     const int16_t mean_lsb_q4[3] = { 16 * 100, 16 * -200, 16 * 125 };
     TEST_ASSERT_EQUAL_UINT8(CALIBRATION_GOOD, calibration_tare(&c, mean_lsb_q4).why);
@@ -83,7 +81,7 @@ static void test_a_tared_attitude_is_level(void)
 }
 
 /* A part of 296 LSB/g shows 1.156 g at rest: not to be trusted, until its scale is known. */
-static void test_gravity_is_judged_after_the_calibration(void)
+TEST(test_gravity_is_judged_after_the_calibration)
 {
     TEST_ASSERT_EQUAL_UINT16(ROW_NOT_GRAVITY, row_of(0, 0, 296).flags);
     c.scale_lsb_per_g_uq6[2] = CALIBRATION_SCALE_UQ6(296U);
@@ -92,7 +90,7 @@ static void test_gravity_is_judged_after_the_calibration(void)
 }
 
 /* Full scale on all axes of a part of 200 LSB/g, along the level: 1.28 x sqrt(3) x 16 g = 35.5 g, limited. */
-static void test_mg_are_limited(void)
+TEST(test_mg_are_limited)
 {
     for (uint8_t i = 0; i < 3; i++) {
         c.scale_lsb_per_g_uq6[i] = CALIBRATION_SCALE_MIN_UQ6;
@@ -104,7 +102,7 @@ static void test_mg_are_limited(void)
 }
 
 /* A sample that is missing has a prediction of its own, calibrated. */
-static void test_a_missing_sample_is_calibrated_as_well(void)
+TEST(test_a_missing_sample_is_calibrated_as_well)
 {
     c.scale_lsb_per_g_uq6[2] = CALIBRATION_SCALE_UQ6(320U);
     pipeline_calibrate(&c);
@@ -127,7 +125,7 @@ static void test_a_missing_sample_is_calibrated_as_well(void)
 }
 
 /* What the filters hold of 1.156 g is as little to be trusted without a sample. */
-static void test_gravity_is_judged_of_a_prediction_too(void)
+TEST(test_gravity_is_judged_of_a_prediction_too)
 {
     (void)row_of(0, 0, 296);
     row_t row;
@@ -138,7 +136,7 @@ static void test_gravity_is_judged_of_a_prediction_too(void)
 }
 
 /* A calibration is in force whole from the next row on, although its sample may be filtered already. */
-static void test_a_row_is_calibrated_by_one_calibration(void)
+TEST(test_a_row_is_calibrated_by_one_calibration)
 {
     row_t row = row_of(256, 128, 64);
     TEST_ASSERT_INT16_WITHIN(1, 1000, row.mg[0]);
@@ -160,7 +158,7 @@ static void test_a_row_is_calibrated_by_one_calibration(void)
 }
 
 /* Of four samples for a row the last is judged: a jerk before it is not in the row's acceleration, nor in its flag. */
-static void test_gravity_is_judged_of_the_rows_own_acceleration(void)
+TEST(test_gravity_is_judged_of_the_rows_own_acceleration)
 {
     (void)row_of(0, 0, 256);
     row_t row;
@@ -180,19 +178,4 @@ static void test_gravity_is_judged_of_the_rows_own_acceleration(void)
     }
     TEST_ASSERT_GREATER_THAN_UINT(20, not_gravity);
     TEST_ASSERT_LESS_THAN_UINT(40, not_gravity);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_mg_are_calibrated_and_readings_are_not);
-    RUN_TEST(test_angles_are_those_of_the_axes_named_anew);
-    RUN_TEST(test_a_tared_attitude_is_level);
-    RUN_TEST(test_gravity_is_judged_after_the_calibration);
-    RUN_TEST(test_mg_are_limited);
-    RUN_TEST(test_a_missing_sample_is_calibrated_as_well);
-    RUN_TEST(test_gravity_is_judged_of_a_prediction_too);
-    RUN_TEST(test_a_row_is_calibrated_by_one_calibration);
-    RUN_TEST(test_gravity_is_judged_of_the_rows_own_acceleration);
-    return UNITY_END();
 }

@@ -6,11 +6,7 @@
 #include "path/pipeline.h"
 #include "support/board.h"
 #include "support/documented_limits.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
+#include "support/test.h"
 
 /*
  * Flags of the last of 60 rows of a board that reads (x, y, z), after the command if there is one; without that of a
@@ -25,12 +21,11 @@ static unsigned flags_of(const char *command, int16_t x, int16_t y, int16_t z)
         board_type(command);
     }
     board_run_ms(600);
-    stream_free(&stream);
     return board.rows[board.row_count - 1].flags & ~(unsigned)ROW_STUCK;
 }
 
 /* 0.85 g are 217.6 LSB, 1.15 g are 294.4. */
-static void test_not_gravity(void)
+TEST(test_not_gravity)
 {
     TEST_ASSERT_EQUAL_UINT(ROW_NOT_GRAVITY, flags_of(NULL, 0, 0, 217));
     TEST_ASSERT_EQUAL_UINT(0, flags_of(NULL, 0, 0, 219));
@@ -38,7 +33,7 @@ static void test_not_gravity(void)
     TEST_ASSERT_EQUAL_UINT(ROW_NOT_GRAVITY, flags_of(NULL, 0, 0, 296));
 }
 
-static void test_roll_undefined_is_flagged_and_held(void)
+TEST(test_roll_undefined_is_flagged_and_held)
 {
     TEST_ASSERT_EQUAL_UINT(ROW_ROLL_UNDEFINED, flags_of(NULL, 256, 2, 2));
     TEST_ASSERT_EQUAL_INT(0, board.rows[board.row_count - 1].roll_cdeg);
@@ -47,7 +42,7 @@ static void test_roll_undefined_is_flagged_and_held(void)
 }
 
 /* Both rails of each range, and one LSB inside them. */
-static void test_clipped_at_the_rails_of_the_range_in_force(void)
+TEST(test_clipped_at_the_rails_of_the_range_in_force)
 {
     for (int range_g = 2; range_g <= 16; range_g *= 2) {
         char command[24];
@@ -64,7 +59,7 @@ static void test_clipped_at_the_rails_of_the_range_in_force(void)
  * y climbs by 1 LSB a sample; two samples are missing at 3 s: each has a row, whose estimate climbs on. The clock looks
  * for the next one when it comes: its time is as near as the looks are.
  */
-static void test_missing_samples_are_coasted_over(void)
+TEST(test_missing_samples_are_coasted_over)
 {
     stream_t ramp = board_constant_stream(600, 100.0, 0, 0, 256);
     for (size_t i = 0; i < ramp.count; i++) {
@@ -87,11 +82,10 @@ static void test_missing_samples_are_coasted_over(void)
     }
     TEST_ASSERT_EQUAL_INT(2, coasts);
     TEST_ASSERT_TRUE(compared > 120);
-    stream_free(&ramp);
 }
 
 /* A sensor hangs on one reading for 60 samples: the tenth and those behind it are marked, the fault is told once. */
-static void test_stuck_from_the_tenth_equal_reading_on(void)
+TEST(test_stuck_from_the_tenth_equal_reading_on)
 {
     stream_t stream = board_hung_stream(1000, 11u, 300, 60);
     board_start(&stream, 0.0, 0);
@@ -108,11 +102,10 @@ static void test_stuck_from_the_tenth_equal_reading_on(void)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 10: values do not change: check ", 0));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 10 over: ", 0));
     TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# fault", 0));
-    stream_free(&stream);
 }
 
 /* One reading of z in ten is doubled for 3 s: told once, and once that it is over, within 2.6 s. */
-static void test_two_sensors_are_told(void)
+TEST(test_two_sensors_are_told)
 {
     stream_t stream = board_noisy_stream(1500, 100.0, 1.5, 12u);
     for (size_t i = 300; i < 600; i += 10) {
@@ -129,7 +122,6 @@ static void test_two_sensors_are_told(void)
     for (size_t i = 0; i < board.row_count; i++) {
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & (ROW_STUCK | ROW_FAULT | ROW_INTEGRITY));
     }
-    stream_free(&stream);
 }
 
 /* A sensor hangs for so many samples, y reads this behind it for one sample, and then it is well. */
@@ -139,11 +131,10 @@ static void hangs(size_t hung, int16_t then_lsb)
     stream.rows[300 + hung].lsb[1] = then_lsb;
     board_start(&stream, 0.0, 0);
     board_run_ms(10.0 * (double)(300 + hung + 400));
-    stream_free(&stream);
 }
 
 /* What it has learned of the noise meanwhile is forgotten: the angles are right at once, and nothing is refused. */
-static void test_the_default_filter_behind_a_sensor_that_hung(void)
+TEST(test_the_default_filter_behind_a_sensor_that_hung)
 {
     for (size_t hung = 20; hung <= 1280; hung *= 2) {
         hangs(hung, -53);
@@ -182,13 +173,12 @@ static double unrest_after(size_t hung)
             double change = board.rows[i].roll_cdeg - board.rows[i - 1].roll_cdeg;
             squares += change * change;
         }
-        stream_free(&stream);
     }
     return squares / 120.0;
 }
 
 /* With the 16th marked reading, the 25th equal one, and none before, what the filters had learned is forgotten. */
-static void test_sixteen_marked_readings_are_forgotten(void)
+TEST(test_sixteen_marked_readings_are_forgotten)
 {
     double kept = unrest_after(24);
     double forgotten = unrest_after(25);
@@ -198,7 +188,7 @@ static void test_sixteen_marked_readings_are_forgotten(void)
 }
 
 /* The first reading that differs is a bad one: the filter does not begin anew on it. */
-static void test_a_bad_reading_behind_a_sensor_that_hung(void)
+TEST(test_a_bad_reading_behind_a_sensor_that_hung)
 {
     hangs(200, 900);
     size_t behind = 0;
@@ -209,19 +199,4 @@ static void test_a_bad_reading_behind_a_sensor_that_hung(void)
         TEST_ASSERT_TRUE(behind == 0 || abs(board.rows[i].roll_cdeg + 1166) < 200);
     }
     TEST_ASSERT_TRUE(behind > 300);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_not_gravity);
-    RUN_TEST(test_roll_undefined_is_flagged_and_held);
-    RUN_TEST(test_clipped_at_the_rails_of_the_range_in_force);
-    RUN_TEST(test_missing_samples_are_coasted_over);
-    RUN_TEST(test_stuck_from_the_tenth_equal_reading_on);
-    RUN_TEST(test_two_sensors_are_told);
-    RUN_TEST(test_the_default_filter_behind_a_sensor_that_hung);
-    RUN_TEST(test_sixteen_marked_readings_are_forgotten);
-    RUN_TEST(test_a_bad_reading_behind_a_sensor_that_hung);
-    return UNITY_END();
 }

@@ -4,7 +4,6 @@
  */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/number.h"
 #include "filter_list.h"
@@ -12,7 +11,7 @@
 #include "settings/settings_row.h"
 #include "settings/settings_table.h"
 #include "support/documented_limits.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { DECIMALS = 10000 }; /* what a number is typed in */
 
@@ -22,8 +21,6 @@ void setUp(void)
 {
     kind = 0;
 }
-
-void tearDown(void) {}
 
 static void shipped(void)
 {
@@ -111,7 +108,7 @@ static unsigned assert_ends(const setting_t *s, const char *about)
 }
 
 /* Refused: poles of synth and synth_plus beyond the unit circle (5), stay of pbf and shrf beside their clean (4). */
-static void test_each_number_is_taken_to_its_ends_and_no_further(void)
+TEST(test_each_number_is_taken_to_its_ends_and_no_further)
 {
     unsigned refused = 0;
     for (kind = 0; kind < FILTER_KIND_COUNT; kind++) {
@@ -139,7 +136,7 @@ static bool is_member(const setting_t *s, uint32_t value)
     return found;
 }
 
-static void test_each_list_takes_its_members_alone(void)
+TEST(test_each_list_takes_its_members_alone)
 {
     static const uint8_t lists[] = { SETTING_RATE, SETTING_RANGE, SETTING_BAUD };
     for (size_t k = 0; k < 3; k++) {
@@ -157,7 +154,7 @@ static void test_each_list_takes_its_members_alone(void)
     }
 }
 
-static void test_pages_have_the_ranges_of_the_table(void)
+TEST(test_pages_have_the_ranges_of_the_table)
 {
     setting_t s;
     setting_look(&s, SETTING_EVERY);
@@ -168,13 +165,4 @@ static void test_pages_have_the_ranges_of_the_table(void)
     setting_look(&s, SETTING_SCALE);
     TEST_ASSERT_EQUAL_INT32(LIMIT_SCALE_MIN_LSB << s.format.fraction_bits, s.least);
     TEST_ASSERT_EQUAL_INT32(LIMIT_SCALE_MAX_LSB << s.format.fraction_bits, s.most);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_each_number_is_taken_to_its_ends_and_no_further);
-    RUN_TEST(test_each_list_takes_its_members_alone);
-    RUN_TEST(test_pages_have_the_ranges_of_the_table);
-    return UNITY_END();
 }

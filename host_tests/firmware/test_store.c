@@ -5,7 +5,7 @@
 #include "hal_watchdog.h"
 #include "support/random.h"
 #include "support/store.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { OLD = 3, NEW = 200, THIRD = 77, NONE = -1 };
 
@@ -15,8 +15,6 @@ void setUp(void)
 {
     store_new_board();
 }
-
-void tearDown(void) {}
 
 static void saves(int count)
 {
@@ -90,8 +88,7 @@ static bool judge_boot(int old, uint32_t set)
     }
     store_save(THIRD);
     TEST_ASSERT_FALSE(store_failed());
-    TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-    TEST_ASSERT_TRUE(store_holds(THIRD));
+    store_boots_to(STORE_GOOD, THIRD);
     return is_new;
 }
 
@@ -120,7 +117,7 @@ static uint32_t cut_everywhere(int old, uint32_t set, int values)
 }
 
 /* All bytes differ: those of the image, mark twice, sequence number, two checks at most, and the version once. */
-static void test_supply_cut_at_every_byte_of_a_save(void)
+TEST(test_supply_cut_at_every_byte_of_a_save)
 {
     for (int history = 0; history < HISTORIES; history++) {
         int old = live(history);
@@ -130,7 +127,7 @@ static void test_supply_cut_at_every_byte_of_a_save(void)
     }
 }
 
-static void test_supply_cut_in_a_save_of_one_changed_byte(void)
+TEST(test_supply_cut_in_a_save_of_one_changed_byte)
 {
     for (int history = 1; history < 6; history++) {
         int old = live(history);
@@ -160,11 +157,10 @@ static void cut_twice(int old, uint32_t first, test_random_t *random)
         TEST_ASSERT_TRUE(store_holds(OTHER) || store_holds(NEW) || (old != NONE && !was_new && store_holds(OLD)));
     }
     store_save(THIRD);
-    TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-    TEST_ASSERT_TRUE(store_holds(THIRD));
+    store_boots_to(STORE_GOOD, THIRD);
 }
 
-static void test_supply_cut_in_the_save_after_one_that_was_cut(void)
+TEST(test_supply_cut_in_the_save_after_one_that_was_cut)
 {
     test_random_t random;
     random_seed(&random, 11);
@@ -180,13 +176,12 @@ static void test_supply_cut_in_the_save_after_one_that_was_cut(void)
 }
 
 /* The number wraps twice, and each set is the one in force after its save. */
-static void test_three_hundred_saves_on_end(void)
+TEST(test_three_hundred_saves_on_end)
 {
     TEST_ASSERT_EQUAL(STORE_EMPTY, store_boot());
     for (uint32_t i = 0; i < 300; i++) {
         store_save(i % 256);
-        TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-        TEST_ASSERT_TRUE(store_holds(i % 256));
+        store_boots_to(STORE_GOOD, i % 256);
         TEST_ASSERT_EQUAL_UINT8(i % 128, store_copy((int)(i % 2))[STORE_AT_SEQUENCE]);
     }
     /* 150 saves each, which open and close it, but the first, which finds it open */
@@ -195,14 +190,13 @@ static void test_three_hundred_saves_on_end(void)
 }
 
 /* The later of two neighbours counts, in either copy; of two with one number either, and then what is saved next. */
-static void test_every_sequence_number(void)
+TEST(test_every_sequence_number)
 {
     for (unsigned n = 0; n < 128; n++) {
         for (int later = 0; later < 2; later++) {
             store_forge(later, NEW, STORE_VERSION, (uint8_t)((n + 1) % 128));
             store_forge(1 - later, OLD, STORE_VERSION, (uint8_t)n);
-            TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-            TEST_ASSERT_TRUE(store_holds(NEW));
+            store_boots_to(STORE_GOOD, NEW);
         }
         store_forge(0, OLD, STORE_VERSION, (uint8_t)n);
         TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
@@ -212,15 +206,14 @@ static void test_every_sequence_number(void)
     store_forge(1, NEW, STORE_VERSION, 9);
     (void)store_boot();
     store_save(THIRD);
-    TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-    TEST_ASSERT_TRUE(store_holds(THIRD));
+    store_boots_to(STORE_GOOD, THIRD);
 }
 
 /*
  * What a save of one byte's change writes: the mark twice, the number, the byte, and those of the two checks that
  * become others. Nothing else, and nothing outside the copy.
  */
-static void test_cells_written_for_one_changed_byte(void)
+TEST(test_cells_written_for_one_changed_byte)
 {
     (void)store_boot();
     saves(3);
@@ -248,7 +241,7 @@ static void test_cells_written_for_one_changed_byte(void)
 }
 
 /* A cell that does not take its byte: the save fails and is told, the old set stays; and after many, one that works. */
-static void test_worn_cell(void)
+TEST(test_worn_cell)
 {
     for (uint16_t place = 0; place < STORE_RECORD_SIZE; place++) {
         (void)live(3);
@@ -270,13 +263,12 @@ static void test_worn_cell(void)
         }
         store_save(THIRD);
         TEST_ASSERT_FALSE(store_failed());
-        TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-        TEST_ASSERT_TRUE(store_holds(THIRD));
+        store_boots_to(STORE_GOOD, THIRD);
     }
 }
 
 /* A save that failed, a load, a save: what it wrote is the later one. */
-static void test_load_after_a_save_that_failed(void)
+TEST(test_load_after_a_save_that_failed)
 {
     for (int history = 2; history < 4; history++) {
         (void)live(history);
@@ -287,13 +279,12 @@ static void test_load_after_a_save_that_failed(void)
         TEST_ASSERT_EQUAL(STORE_OTHER_COPY, store_load(store_record));
         TEST_ASSERT_FALSE(store_failed());
         store_save(NEW);
-        TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-        TEST_ASSERT_TRUE(store_holds(NEW));
+        store_boots_to(STORE_GOOD, NEW);
     }
 }
 
 /* The image changes after any pass of a save, but the last that writes: failed, and the old set stays. */
-static void test_image_that_changes_during_a_save(void)
+TEST(test_image_that_changes_during_a_save)
 {
     for (unsigned after = 0; after < STORE_RECORD_SIZE; after++) {
         for (unsigned place = 0; place < STORE_IMAGE_SIZE; place += 7) {
@@ -308,14 +299,13 @@ static void test_image_that_changes_during_a_save(void)
             store_record[place] ^= 0x10u;
             store_finish();
             TEST_ASSERT_TRUE(store_failed());
-            TEST_ASSERT_EQUAL(STORE_OTHER_COPY, store_boot());
-            TEST_ASSERT_TRUE(store_holds(OLD));
+            store_boots_to(STORE_OTHER_COPY, OLD);
         }
     }
 }
 
 /* One write begun in a call at most, none while the EEPROM is not ready, and no second save beside the first. */
-static void test_one_byte_at_a_time(void)
+TEST(test_one_byte_at_a_time)
 {
     (void)live(3);
     store_fill(NEW);
@@ -335,12 +325,11 @@ static void test_one_byte_at_a_time(void)
         }
     }
     TEST_ASSERT_FALSE(store_pass());
-    TEST_ASSERT_EQUAL(STORE_GOOD, store_boot());
-    TEST_ASSERT_TRUE(store_holds(NEW));
+    store_boots_to(STORE_GOOD, NEW);
 }
 
 /* A reset by the watchdog leaves the write under way: it is waited for, and not read before. */
-static void test_reset_during_a_write(void)
+TEST(test_reset_during_a_write)
 {
     (void)live(2);
     store_fill(NEW);
@@ -352,21 +341,4 @@ static void test_reset_during_a_write(void)
     TEST_ASSERT_EQUAL(STORE_OTHER_COPY, store_load(store_record));
     TEST_ASSERT_TRUE(store_holds(OLD));
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 3.4, hal_host_now_ms() - begun_ms);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_supply_cut_at_every_byte_of_a_save);
-    RUN_TEST(test_supply_cut_in_a_save_of_one_changed_byte);
-    RUN_TEST(test_supply_cut_in_the_save_after_one_that_was_cut);
-    RUN_TEST(test_three_hundred_saves_on_end);
-    RUN_TEST(test_every_sequence_number);
-    RUN_TEST(test_cells_written_for_one_changed_byte);
-    RUN_TEST(test_worn_cell);
-    RUN_TEST(test_load_after_a_save_that_failed);
-    RUN_TEST(test_image_that_changes_during_a_save);
-    RUN_TEST(test_one_byte_at_a_time);
-    RUN_TEST(test_reset_during_a_write);
-    return UNITY_END();
 }

@@ -5,7 +5,7 @@
 #include "hal_host.h"
 #include "support/random.h"
 #include "support/store.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { OLDER = 40, LATEST = 41 };
 
@@ -24,31 +24,23 @@ void setUp(void)
     store_keep(whole);
 }
 
-void tearDown(void) {}
-
-static void boots_to(store_status_t expected, uint32_t set)
-{
-    TEST_ASSERT_EQUAL(expected, store_boot());
-    TEST_ASSERT_TRUE(expected < STORE_GOOD || store_holds(set));
-}
-
 /* What is left when this copy alone is damaged. */
 static void boots_without(int copy)
 {
-    boots_to(STORE_OTHER_COPY, copy == 0 ? LATEST : OLDER);
+    store_boots_to(STORE_OTHER_COPY, copy == 0 ? LATEST : OLDER);
 }
 
 /* The twin of all that follows: undamaged; and the store seals a copy as another way of reckoning does. */
-static void test_undamaged(void)
+TEST(test_undamaged)
 {
-    boots_to(STORE_GOOD, LATEST);
+    store_boots_to(STORE_GOOD, LATEST);
     for (int copy = 0; copy < 2; copy++) {
         store_forge(copy, copy == 0 ? OLDER : LATEST, STORE_VERSION, copy == 0 ? 127 : 0);
     }
     TEST_ASSERT_EQUAL_UINT8_ARRAY(whole, hal_host_eeprom(), HAL_EEPROM_SIZE);
 }
 
-static void test_every_byte_of_a_copy_with_every_value(void)
+TEST(test_every_byte_of_a_copy_with_every_value)
 {
     for (int copy = 0; copy < 2; copy++) {
         for (unsigned place = 0; place < STORE_RECORD_SIZE; place++) {
@@ -59,7 +51,7 @@ static void test_every_byte_of_a_copy_with_every_value(void)
             }
         }
     }
-    boots_to(STORE_GOOD, LATEST);
+    store_boots_to(STORE_GOOD, LATEST);
 }
 
 enum { WAYS = 24 };
@@ -83,7 +75,7 @@ static void damage_two(int copy, unsigned first, unsigned second, int way, test_
     at[second] = damaged(at[second], way, random);
 }
 
-static void test_every_pair_of_bytes_of_a_copy(void)
+TEST(test_every_pair_of_bytes_of_a_copy)
 {
     test_random_t random;
     random_seed(&random, 21);
@@ -101,7 +93,7 @@ static void test_every_pair_of_bytes_of_a_copy(void)
 }
 
 /* A byte in each. */
-static void test_every_byte_of_one_with_every_byte_of_the_other(void)
+TEST(test_every_byte_of_one_with_every_byte_of_the_other)
 {
     test_random_t random;
     random_seed(&random, 22);
@@ -110,7 +102,7 @@ static void test_every_byte_of_one_with_every_byte_of_the_other(void)
             for (int way = 0; way < WAYS; way++) {
                 store_copy(0)[first] = damaged(store_copy(0)[first], way, &random);
                 store_copy(1)[second] = damaged(store_copy(1)[second], way, &random);
-                boots_to(STORE_DAMAGED, 0);
+                store_boots_to(STORE_DAMAGED, 0);
                 store_put_back(whole);
             }
         }
@@ -118,7 +110,7 @@ static void test_every_byte_of_one_with_every_byte_of_the_other(void)
 }
 
 /* Two bytes in each: every pair, the same in both and with one at random. All FF is not told as never saved. */
-static void test_every_pair_of_bytes_of_both(void)
+TEST(test_every_pair_of_bytes_of_both)
 {
     test_random_t random;
     random_seed(&random, 23);
@@ -130,7 +122,7 @@ static void test_every_pair_of_bytes_of_both(void)
                 bool same = way < 12;
                 damage_two(0, first, second, way, &random);
                 damage_two(1, same ? first : a, same ? second : b, way, &random);
-                boots_to(STORE_DAMAGED, 0);
+                store_boots_to(STORE_DAMAGED, 0);
                 store_put_back(whole);
             }
         }
@@ -142,7 +134,7 @@ static void test_every_pair_of_bytes_of_both(void)
  * two sums weigh neighbours alike at every place, so this is every pair of places. A pair that went unseen would leave
  * both sums as they were.
  */
-static void test_no_pair_of_damages_leaves_the_check_right(void)
+TEST(test_no_pair_of_damages_leaves_the_check_right)
 {
     unsigned long seen = 0;
     for (unsigned k = 1; k < STORE_IMAGE_MAX + 4u; k++) {
@@ -157,7 +149,7 @@ static void test_no_pair_of_damages_leaves_the_check_right(void)
 }
 
 /* Any bytes at all under a mark that is right: taken once in 65,536 times. */
-static void test_junk_under_a_right_mark(void)
+TEST(test_junk_under_a_right_mark)
 {
     test_random_t random;
     random_seed(&random, 24);
@@ -173,85 +165,67 @@ static void test_junk_under_a_right_mark(void)
 }
 
 /* Contents that programs and programmers leave: all 00 and any one value are not ours, all FF is an empty store. */
-static void test_contents_of_one_value(void)
+TEST(test_contents_of_one_value)
 {
     for (unsigned value = 0; value < 256; value++) {
         memset(hal_host_eeprom(), (int)value, HAL_EEPROM_SIZE);
-        boots_to(value == 0xFF ? STORE_EMPTY : STORE_DAMAGED, 0);
+        store_boots_to(value == 0xFF ? STORE_EMPTY : STORE_DAMAGED, 0);
     }
 }
 
-static void test_one_copy_never_written(void)
+TEST(test_one_copy_never_written)
 {
     memset(store_copy(0), 0xFF, STORE_RECORD_SIZE);
-    boots_to(STORE_GOOD, LATEST);
+    store_boots_to(STORE_GOOD, LATEST);
     store_copy(1)[3] ^= 1u;
-    boots_to(STORE_DAMAGED, 0);
+    store_boots_to(STORE_DAMAGED, 0);
     store_save(OLDER);
-    boots_to(STORE_GOOD, OLDER);
+    store_boots_to(STORE_GOOD, OLDER);
 }
 
 /* Damaged, then saved: whole again after one save where one was damaged, after two where both were. */
-static void test_a_save_heals(void)
+TEST(test_a_save_heals)
 {
     for (int copy = 0; copy < 2; copy++) {
         store_put_back(whole);
         store_copy(copy)[STORE_AT_MARK] ^= 4u;
         (void)store_boot();
         store_save(99);
-        boots_to(STORE_GOOD, 99);
+        store_boots_to(STORE_GOOD, 99);
     }
     store_copy(0)[0] ^= 4u;
     store_copy(1)[0] ^= 4u;
-    boots_to(STORE_DAMAGED, 0);
+    store_boots_to(STORE_DAMAGED, 0);
     store_save(98);
-    boots_to(STORE_OTHER_COPY, 98);
+    store_boots_to(STORE_OTHER_COPY, 98);
     store_save(97);
-    boots_to(STORE_GOOD, 97);
+    store_boots_to(STORE_GOOD, 97);
 }
 
 /* Another version is told when a copy of it is whole, and never when it only looks like it. Ours comes first. */
-static void test_other_version(void)
+TEST(test_other_version)
 {
     store_forge(0, OLDER, STORE_VERSION + 1, 127);
-    boots_to(STORE_GOOD, LATEST);
+    store_boots_to(STORE_GOOD, LATEST);
     store_forge(1, LATEST, STORE_VERSION + 1, 0);
-    boots_to(STORE_OTHER_VERSION, 0);
+    store_boots_to(STORE_OTHER_VERSION, 0);
     store_copy(1)[STORE_AT_VERSION] = STORE_VERSION;
-    boots_to(STORE_OTHER_VERSION, 0);
+    store_boots_to(STORE_OTHER_VERSION, 0);
     store_copy(0)[STORE_AT_VERSION] = STORE_VERSION + 3;
-    boots_to(STORE_DAMAGED, 0);
+    store_boots_to(STORE_DAMAGED, 0);
     store_forge(0, OLDER, STORE_VERSION, 50);
     store_forge(1, LATEST, STORE_VERSION + 1, 51);
-    boots_to(STORE_GOOD, OLDER);
+    store_boots_to(STORE_GOOD, OLDER);
 }
 
 /* Records of another size: whatever it says of itself, what stands where we look is not ours. */
-static void test_other_size(void)
+TEST(test_other_size)
 {
     for (unsigned mark = 0; mark < 256; mark++) {
         store_put_back(whole);
         if (mark != STORE_IMAGE_SIZE) {
             store_copy(1)[STORE_AT_MARK] = (uint8_t)mark;
-            boots_to(STORE_OTHER_COPY, OLDER);
+            store_boots_to(STORE_OTHER_COPY, OLDER);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_undamaged);
-    RUN_TEST(test_every_byte_of_a_copy_with_every_value);
-    RUN_TEST(test_every_pair_of_bytes_of_a_copy);
-    RUN_TEST(test_every_byte_of_one_with_every_byte_of_the_other);
-    RUN_TEST(test_every_pair_of_bytes_of_both);
-    RUN_TEST(test_no_pair_of_damages_leaves_the_check_right);
-    RUN_TEST(test_junk_under_a_right_mark);
-    RUN_TEST(test_contents_of_one_value);
-    RUN_TEST(test_one_copy_never_written);
-    RUN_TEST(test_a_save_heals);
-    RUN_TEST(test_other_version);
-    RUN_TEST(test_other_size);
-    return UNITY_END();
 }

@@ -5,10 +5,10 @@
 #include "filter_list.h"
 #include "path/pipeline.h"
 #include "path/supervisor.h"
-#include "support/board.h"
 #include "support/random.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/talk.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -24,10 +24,6 @@ enum { SAMPLES = 2400, FAULT_FROM = 800, FAULT_TO = 2000, RATE_HZ = 100 };
 static const double scales[3] = { 265.0, 265.0, 256.0 };
 
 typedef enum { HEALTHY, FROZEN, AT_ZERO, AT_RAIL } fault_t;
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* From 15 to 60 degrees and back in 12 s, pitch 10 degrees. */
 static double roll_deg_at(double t_s)
@@ -61,8 +57,7 @@ static void run(stream_t *stream, const char *filter)
     board_run_ms(100);
     char command[40];
     snprintf(command, sizeof command, "filter %s", filter);
-    board_type(command);
-    board_run_ms(SAMPLES * 1000.0 / RATE_HZ);
+    (void)talk_typed(command, SAMPLES * 1000.0 / RATE_HZ);
 }
 
 /* The sample of a row: the first one was latched a period after the first tick. */
@@ -121,53 +116,50 @@ static void assert_left_out(uint8_t bad, fault_t fault)
     TEST_ASSERT_TRUE(before.worst_pitch_deg < 1.5 && after.worst_pitch_deg < 1.5);
     TEST_ASSERT_TRUE(during.worst_deg < (bad == 0 ? 1.5 : bound_deg(bad)));
     TEST_ASSERT_TRUE(during.worst_pitch_deg < (bad == 0 ? bound_deg(bad) : 1.5));
-    stream_free(&stream);
 }
 
-static void test_a_bad_x_is_left_out(void)
+TEST(test_a_bad_x_is_left_out)
 {
     assert_left_out(0, FROZEN);
     assert_left_out(0, AT_ZERO);
     assert_left_out(0, AT_RAIL);
 }
 
-static void test_a_bad_z_is_left_out(void)
+TEST(test_a_bad_z_is_left_out)
 {
     assert_left_out(2, FROZEN);
     assert_left_out(2, AT_ZERO);
     assert_left_out(2, AT_RAIL);
 }
 
-static void test_a_bad_y_is_left_out(void)
+TEST(test_a_bad_y_is_left_out)
 {
     assert_left_out(1, FROZEN);
     assert_left_out(1, AT_ZERO);
     assert_left_out(1, AT_RAIL);
 }
 
-static void test_a_healthy_board_leaves_none_out(void)
+TEST(test_a_healthy_board_leaves_none_out)
 {
     stream_t stream = rolling_stream(0, HEALTHY);
     run(&stream, "auto");
     judged_t all = judge(200.0, SAMPLES - 20.0);
     TEST_ASSERT_EQUAL_UINT(0, all.left_out);
     TEST_ASSERT_TRUE(all.worst_deg < 1.5);
-    stream_free(&stream);
 }
 
 /* Another filter believes the axis: the angle is wrong by tens of degrees, and nothing is flagged. */
-static void test_another_filter_leaves_none_out(void)
+TEST(test_another_filter_leaves_none_out)
 {
     stream_t stream = rolling_stream(2, AT_ZERO);
     run(&stream, by_role("{plain}"));
     judged_t during = judge(FAULT_FROM + 200.0, FAULT_TO - 1.0);
     TEST_ASSERT_EQUAL_UINT(0, during.left_out);
     TEST_ASSERT_TRUE(during.worst_deg > 20.0);
-    stream_free(&stream);
 }
 
 /* Of two bad axes none can be made up. */
-static void test_two_bad_axes_are_too_many(void)
+TEST(test_two_bad_axes_are_too_many)
 {
     stream_t stream = rolling_stream(2, AT_ZERO);
     for (int i = FAULT_FROM; i < FAULT_TO; i++) {
@@ -175,7 +167,6 @@ static void test_two_bad_axes_are_too_many(void)
     }
     run(&stream, "auto");
     TEST_ASSERT_EQUAL_UINT(0, judge(FAULT_FROM, FAULT_TO).left_out);
-    stream_free(&stream);
 }
 
 /* What `status` says of an axis that is frozen, with a row for so many samples. */
@@ -184,29 +175,22 @@ static double sigma_of_cdeg(uint8_t axis, const char *every)
     stream_t stream = rolling_stream(axis, FROZEN);
     board_start(&stream, 0.0, 0);
     board_run_ms(100);
-    board_type("filter auto");
-    board_run_ms(5000);
-    size_t first = board.note_count;
-    board_type("status");
-    board_run_ms(100);
+    (void)talk_typed("filter auto", 5000);
+    size_t first = talk_typed("status", 100);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", chosen x ", first));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("without", first));
-    board_type(every);
-    board_run_ms(6500);
-    first = board.note_count;
-    board_type("status");
-    board_run_ms(100);
+    (void)talk_typed(every, 6500);
+    first = talk_typed("status", 100);
     char words[] = ", without z sigma cdeg ";
     words[strlen(", without ")] = "xyz"[axis];
     const char *told = strstr(board.notes[first], words);
     TEST_ASSERT_NOT_NULL(told);
     double sigma_cdeg = strtod(told + strlen(words), NULL);
-    stream_free(&stream);
     return sigma_cdeg;
 }
 
 /* `status` names the members, and the axis with the sigma of the direction: noise and 10 LSB of the part, 1 / cos. */
-static void test_status_tells_choices_and_the_axis_left_out(void)
+TEST(test_status_tells_choices_and_the_axis_left_out)
 {
     double sigma_cdeg = sigma_of_cdeg(2, "every 1");
     /* R is 1.5 x 2.25 LSB^2; variance gains of the members 0.05 to 0.4; the component 0.6 to 1 of 1 g; rounded down */
@@ -219,9 +203,7 @@ static void test_status_tells_choices_and_the_axis_left_out(void)
 
 static double sigma_told_cdeg(void)
 {
-    size_t first = board.note_count;
-    board_type("status");
-    board_run_ms(100);
+    size_t first = talk_typed("status", 100);
     const char *told = strstr(board.notes[first], " sigma cdeg ");
     TEST_ASSERT_NOT_NULL(told);
     return strtod(told + strlen(" sigma cdeg "), NULL);
@@ -231,7 +213,7 @@ static double sigma_told_cdeg(void)
  * The noisier of the axes that remain, whichever comes first: x still and y rolling, and the other way round. With an R
  * of 1000 LSB^2 the members' gains make the difference, and not the 10 LSB of the part.
  */
-static void test_the_sigma_told_is_that_of_the_noisier_axis(void)
+TEST(test_the_sigma_told_is_that_of_the_noisier_axis)
 {
     double told_cdeg[2];
     for (int swapped = 0; swapped < 2; swapped++) {
@@ -243,19 +225,16 @@ static void test_the_sigma_told_is_that_of_the_noisier_axis(void)
         }
         board_start(&stream, 0.0, 0);
         board_run_ms(100);
-        board_type("filter auto");
-        board_run_ms(100);
-        board_type("r 1000");
-        board_run_ms(11400);
+        (void)talk_typed("filter auto", 100);
+        (void)talk_typed("r 1000", 11400);
         told_cdeg[swapped] = sigma_told_cdeg();
-        stream_free(&stream);
     }
     TEST_ASSERT_TRUE(told_cdeg[0] > 0.0);
     TEST_ASSERT_DOUBLE_WITHIN(1.0, told_cdeg[0], told_cdeg[1]);
 }
 
 /* A change of the choice is flagged: rarely at rest, and never with another filter. */
-static void test_changes_of_the_choice_are_flagged(void)
+TEST(test_changes_of_the_choice_are_flagged)
 {
     stream_t stream = rolling_stream(0, HEALTHY);
     run(&stream, "auto");
@@ -268,44 +247,23 @@ static void test_changes_of_the_choice_are_flagged(void)
     for (size_t i = 0; i < board.row_count; i++) {
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & ROW_SWITCHED);
     }
-    stream_free(&stream);
 }
 
 /* While the axes change to another filter, the last one first, there is no choice of each to tell. */
-static void test_no_choices_are_told_of_a_filter_that_is_leaving(void)
+TEST(test_no_choices_are_told_of_a_filter_that_is_leaving)
 {
     stream_t stream = rolling_stream(0, HEALTHY);
     board_start(&stream, 0.0, 0);
     board_run_ms(100);
-    board_type("filter auto");
-    board_run_ms(1000);
+    (void)talk_typed("filter auto", 1000);
     board_type(by_role("filter {plain}"));
     for (int ms = 0; ms < 40 && pipeline_axes()[2].filter.law != filter_listed(plain_kind()); ms++) {
         board_run_ms(1);
     }
     TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline_axes()[0].filter.law);
-    size_t first = board.note_count;
-    board_type("status");
-    board_run_ms(3);
+    size_t first = talk_typed("status", 3);
     TEST_ASSERT_EQUAL_PTR(&filter_law_auto, pipeline_axes()[0].filter.law);
     board_run_ms(100);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# state streaming", first));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("chosen", first));
-    stream_free(&stream);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_healthy_board_leaves_none_out);
-    RUN_TEST(test_a_bad_x_is_left_out);
-    RUN_TEST(test_a_bad_z_is_left_out);
-    RUN_TEST(test_a_bad_y_is_left_out);
-    RUN_TEST(test_another_filter_leaves_none_out);
-    RUN_TEST(test_two_bad_axes_are_too_many);
-    RUN_TEST(test_status_tells_choices_and_the_axis_left_out);
-    RUN_TEST(test_the_sigma_told_is_that_of_the_noisier_axis);
-    RUN_TEST(test_changes_of_the_choice_are_flagged);
-    RUN_TEST(test_no_choices_are_told_of_a_filter_that_is_leaving);
-    return UNITY_END();
 }

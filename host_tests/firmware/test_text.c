@@ -3,13 +3,12 @@
 
 #include "base/format.h"
 #include <stdio.h>
-#include <string.h>
 
 #include "hal_host.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 #include "hal_uart.h"
-#include "unity.h"
+#include "support/test.h"
 
 static char sent[512];
 static size_t sent_length;
@@ -30,8 +29,6 @@ void setUp(void)
     hal_uart_init(1000000);
 }
 
-void tearDown(void) {}
-
 /* The line as it left, without its end. */
 static const char *line_out(void)
 {
@@ -45,7 +42,7 @@ static const char *line_out(void)
     return sent;
 }
 
-static void test_every_i16(void)
+TEST(test_every_i16)
 {
     char expected[16];
     for (int32_t v = INT16_MIN; v <= INT16_MAX; v++) {
@@ -56,7 +53,7 @@ static void test_every_i16(void)
     }
 }
 
-static void test_u32_corners(void)
+TEST(test_u32_corners)
 {
     static const uint32_t corners[] = { 0,         1,         9,          10,          65535,
                                         65536,     99999,     100000,     999999,      1000000,
@@ -69,7 +66,7 @@ static void test_u32_corners(void)
     }
 }
 
-static void test_u32_random(void)
+TEST(test_u32_random)
 {
     char expected[16];
     uint32_t v = 12345;
@@ -82,7 +79,7 @@ static void test_u32_random(void)
     }
 }
 
-static void test_hundredths_of_every_angle(void)
+TEST(test_hundredths_of_every_angle)
 {
     char expected[16];
     for (int v = -18000; v <= 18000; v++) {
@@ -94,7 +91,7 @@ static void test_hundredths_of_every_angle(void)
     }
 }
 
-static void test_tenths(void)
+TEST(test_tenths)
 {
     text_tenths(125);
     TEST_ASSERT_EQUAL_STRING("12.5", line_out());
@@ -104,14 +101,14 @@ static void test_tenths(void)
     TEST_ASSERT_EQUAL_STRING("0.7", line_out());
 }
 
-static void test_hex(void)
+TEST(test_hex)
 {
     text_hex8(0xE5);
     text_hex8(0x0A);
     TEST_ASSERT_EQUAL_STRING("E50A", line_out());
 }
 
-static void test_open_answers_for_the_ring(void)
+TEST(test_open_answers_for_the_ring)
 {
     TEST_ASSERT_TRUE(text_open(255));
     text_char('x');
@@ -119,17 +116,4 @@ static void test_open_answers_for_the_ring(void)
     TEST_ASSERT_TRUE(text_open(254));
     hal_uart_tx_discard();
     TEST_ASSERT_TRUE(text_open(255));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_every_i16);
-    RUN_TEST(test_u32_corners);
-    RUN_TEST(test_u32_random);
-    RUN_TEST(test_hundredths_of_every_angle);
-    RUN_TEST(test_tenths);
-    RUN_TEST(test_hex);
-    RUN_TEST(test_open_answers_for_the_ring);
-    return UNITY_END();
 }

@@ -3,7 +3,6 @@
  * pipeline alone, then the whole firmware on the host's HAL.
  */
 #include <math.h>
-#include <stdlib.h>
 
 #include "app/app.h"
 #include "base/counters.h"
@@ -13,8 +12,9 @@
 #include "settings/settings.h"
 #include "support/board.h"
 #include "support/documented_limits.h"
+#include "support/path.h"
 #include "support/roles.h"
-#include "unity.h"
+#include "support/test.h"
 
 #define FOR_EACH_FILTER(kind) for (uint8_t kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++)
 
@@ -28,24 +28,9 @@ void setUp(void)
     rows_come = true;
 }
 
-void tearDown(void) {}
-
-static void begin_at(uint8_t kind, uint16_t rate_dhz)
-{
-    counters_start();
-    coast_wait(0);
-    pipeline_reset();
-    settings_defaults();
-    pipeline_calibrate(&settings()->calibration);
-    settings_take_filter(kind);
-    pipeline_forget();
-    pipeline_change(&settings()->choice, rate_dhz, 16);
-    pipeline_finish();
-}
-
 static void begin(uint8_t kind)
 {
-    begin_at(kind, 1000);
+    path_start(kind, 1000, 16, 0);
 }
 
 static void sample_of(int16_t x_lsb, int16_t y_lsb, int16_t z_lsb)
@@ -96,7 +81,7 @@ static bool second_of_turn(uint32_t period_us, double from, double step)
     return look(period_us);
 }
 
-static void test_the_sixth_second_off_hands_the_rate_over_once(void)
+TEST(test_the_sixth_second_off_hands_the_rate_over_once)
 {
     static const uint32_t periods_us[] = { 9500, 9900, 10100, 10500 };
     for (size_t i = 0; i < 4; i++) {
@@ -111,7 +96,7 @@ static void test_the_sixth_second_off_hands_the_rate_over_once(void)
     }
 }
 
-static void test_what_is_near_or_comes_back_changes_nothing(void)
+TEST(test_what_is_near_or_comes_back_changes_nothing)
 {
     begin(0);
     for (int k = 1; k <= 60; k++) {
@@ -121,7 +106,7 @@ static void test_what_is_near_or_comes_back_changes_nothing(void)
 }
 
 /* By more than its 128th part and 0.1 Hz, which is 0.9 % at 100 Hz and more the slower the sensor is. */
-static void test_the_least_that_is_followed_at_each_rate(void)
+TEST(test_the_least_that_is_followed_at_each_rate)
 {
     for (uint16_t rate_dhz = 125; rate_dhz <= 8000; rate_dhz = (uint16_t)(rate_dhz * 2u)) {
         uint32_t nominal_us = 10000000u / rate_dhz;
@@ -129,7 +114,7 @@ static void test_the_least_that_is_followed_at_each_rate(void)
         for (uint32_t us = nominal_us * 97u / 100u; us <= nominal_us * 103u / 100u; us += step_us) {
             double off_dhz = fabs((double)(10000000u / us) - rate_dhz);
             bool followed = false;
-            begin_at(0, rate_dhz);
+            path_start(0, rate_dhz, 16, 0);
             for (int k = 0; k <= LIMIT_FOLLOW_S; k++) {
                 followed = look(us);
             }
@@ -147,7 +132,7 @@ static void settle(int eighths)
 }
 
 /* In quarters of an LSB, from the middle of one to the middle of another. */
-static void test_the_most_that_is_standing_still(void)
+TEST(test_the_most_that_is_standing_still)
 {
     enum { FROM = 8 * 60 + 1, MOST = 2 * LIMIT_STILL_LSB_Q1 };
     for (int sign = -1; sign <= 1; sign += 2) {
@@ -164,7 +149,7 @@ static void test_the_most_that_is_standing_still(void)
 }
 
 /* Whether a row is written each second or not. */
-static void test_a_board_that_moves_keeps_its_rates_of_change(void)
+TEST(test_a_board_that_moves_keeps_its_rates_of_change)
 {
     for (int with_rows = 0; with_rows <= 1; with_rows++) {
         rows_come = with_rows != 0;
@@ -177,7 +162,7 @@ static void test_a_board_that_moves_keeps_its_rates_of_change(void)
     }
 }
 
-static void test_a_turn_that_leaves_the_sum_of_the_axes_is_no_standing_still(void)
+TEST(test_a_turn_that_leaves_the_sum_of_the_axes_is_no_standing_still)
 {
     const double step = 0.2; /* 11 degrees a second, 6 of gravity's direction */
     begin(0);
@@ -189,7 +174,7 @@ static void test_a_turn_that_leaves_the_sum_of_the_axes_is_no_standing_still(voi
 }
 
 /* Rows before and behind it: no flag, and no more change than half a reading's unit, 0.12 degree. */
-static void test_no_row_shows_it(void)
+TEST(test_no_row_shows_it)
 {
     FOR_EACH_FILTER(kind)
     {
@@ -219,7 +204,7 @@ static int16_t answer_to_a_step(uint32_t period_us)
     return row.mg[1];
 }
 
-static void test_the_filter_has_the_parameters_of_the_true_rate(void)
+TEST(test_the_filter_has_the_parameters_of_the_true_rate)
 {
     int16_t nominal_mg = answer_to_a_step(10000);
     TEST_ASSERT_GREATER_THAN_INT16(nominal_mg, answer_to_a_step(11000));
@@ -227,7 +212,7 @@ static void test_the_filter_has_the_parameters_of_the_true_rate(void)
 }
 
 /* A change of filter goes on with it, a start or another nominal rate does not. */
-static void test_how_long_it_holds(void)
+TEST(test_how_long_it_holds)
 {
     begin(0);
     for (int k = 1; k <= 6; k++) {
@@ -266,11 +251,10 @@ static double handed_over_at_s(double ppm)
         TEST_ASSERT_INT_WITHIN(100, board.rows[i].roll_cdeg, board.rows[i + 1].roll_cdeg);
     }
     hal_host_faults.lap_step = 0;
-    stream_free(&stream);
     return at_s;
 }
 
-static void test_the_firmware_hands_over_what_it_has_measured(void)
+TEST(test_the_firmware_hands_over_what_it_has_measured)
 {
     static const double clocks_ppm[] = { -50000.0, -20000.0, 20000.0, 50000.0 };
     for (size_t i = 0; i < 4; i++) {
@@ -278,20 +262,4 @@ static void test_the_firmware_hands_over_what_it_has_measured(void)
         TEST_ASSERT_TRUE(at_s >= 5.0 && at_s <= 10.0);
     }
     TEST_ASSERT_TRUE(handed_over_at_s(5000.0) == 0.0);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_the_sixth_second_off_hands_the_rate_over_once);
-    RUN_TEST(test_what_is_near_or_comes_back_changes_nothing);
-    RUN_TEST(test_the_least_that_is_followed_at_each_rate);
-    RUN_TEST(test_the_most_that_is_standing_still);
-    RUN_TEST(test_a_board_that_moves_keeps_its_rates_of_change);
-    RUN_TEST(test_a_turn_that_leaves_the_sum_of_the_axes_is_no_standing_still);
-    RUN_TEST(test_no_row_shows_it);
-    RUN_TEST(test_the_filter_has_the_parameters_of_the_true_rate);
-    RUN_TEST(test_how_long_it_holds);
-    RUN_TEST(test_the_firmware_hands_over_what_it_has_measured);
-    return UNITY_END();
 }

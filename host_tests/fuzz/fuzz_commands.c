@@ -5,8 +5,6 @@
  *
  * Input: an options byte, then bytes as typed; 0 is a pause of 40 ms.
  */
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "adxl345_registers.h"

@@ -5,7 +5,7 @@
 #include "hal_time.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
-#include "unity.h"
+#include "support/test.h"
 
 void setUp(void)
 {
@@ -15,9 +15,7 @@ void setUp(void)
     hal_uart_init(115200);
 }
 
-void tearDown(void) {}
-
-static void test_time_comparison_over_the_wrap(void)
+TEST(test_time_comparison_over_the_wrap)
 {
     TEST_ASSERT_TRUE(hal_time_reached(5, 5));
     TEST_ASSERT_TRUE(hal_time_reached(6, 5));
@@ -28,7 +26,7 @@ static void test_time_comparison_over_the_wrap(void)
     TEST_ASSERT_FALSE(hal_time_reached(0x80000000u, 0));
 }
 
-static void test_clock_crosses_the_wrap(void)
+TEST(test_clock_crosses_the_wrap)
 {
     uint32_t before = hal_time_us();
     for (int i = 0; i < 4; i++) {
@@ -50,7 +48,7 @@ static double slept_until_us(uint32_t t_us, unsigned *wakes)
 }
 
 /* Ticks come every 8.2 ms; only the alarm wakes main in between, and at once where 32.768 ms look like none. */
-static void test_alarm_wakes_at_its_moment(void)
+TEST(test_alarm_wakes_at_its_moment)
 {
     static const uint32_t ahead_us[] = { 100, 5000, 8000, 12345, 32767, 32768, 70000, 163000 };
     unsigned wakes;
@@ -64,7 +62,7 @@ static void test_alarm_wakes_at_its_moment(void)
 }
 
 /* A moved alarm does not come at its old moment. */
-static void test_alarm_that_is_moved(void)
+TEST(test_alarm_that_is_moved)
 {
     unsigned wakes;
     hal_sleep_until_wake();
@@ -76,7 +74,7 @@ static void test_alarm_that_is_moved(void)
     TEST_ASSERT_EQUAL_UINT(1, wakes);
 }
 
-static void test_wake_before_sleep_is_not_lost(void)
+TEST(test_wake_before_sleep_is_not_lost)
 {
     uint64_t before = hal_host_now();
     hal_wake();
@@ -87,7 +85,7 @@ static void test_wake_before_sleep_is_not_lost(void)
     TEST_ASSERT_TRUE(hal_host_now() - before > HAL_TICK_US * 4u);
 }
 
-static void test_reset_cause_from_mcusr(void)
+TEST(test_reset_cause_from_mcusr)
 {
     TEST_ASSERT_EQUAL(HAL_RESET_POWER_ON, hal_reset_classify(0x01, true, 120));
     TEST_ASSERT_EQUAL(HAL_RESET_POWER_ON, hal_reset_classify(0x05, false, 0));
@@ -97,7 +95,7 @@ static void test_reset_cause_from_mcusr(void)
 }
 
 /* The UNO's bootloader leaves MCUSR at 0. 250 ms are 30 ticks; a healthy loop feeds within a few. */
-static void test_reset_cause_from_the_breadcrumb(void)
+TEST(test_reset_cause_from_the_breadcrumb)
 {
     TEST_ASSERT_EQUAL(HAL_RESET_POWER_ON, hal_reset_classify(0, false, 30));
     TEST_ASSERT_EQUAL(HAL_RESET_WATCHDOG, hal_reset_classify(0, true, 30));
@@ -106,7 +104,7 @@ static void test_reset_cause_from_the_breadcrumb(void)
 }
 
 /* RAM that lost its content counts nothing; a saturated count does not begin anew. */
-static void test_watchdog_resets_in_a_row_are_counted(void)
+TEST(test_watchdog_resets_in_a_row_are_counted)
 {
     TEST_ASSERT_EQUAL_UINT8(1, hal_reset_count(HAL_RESET_WATCHDOG, true, 0));
     TEST_ASSERT_EQUAL_UINT8(3, hal_reset_count(HAL_RESET_WATCHDOG, true, 2));
@@ -117,7 +115,7 @@ static void test_watchdog_resets_in_a_row_are_counted(void)
     TEST_ASSERT_EQUAL_UINT8(0, hal_reset_count(HAL_RESET_POWER_ON, true, 2));
 }
 
-static void test_watchdog_bites_after_250_ms(void)
+TEST(test_watchdog_bites_after_250_ms)
 {
     hal_watchdog_start();
     while (hal_host_watchdog_bite() == 0) {
@@ -126,7 +124,7 @@ static void test_watchdog_bites_after_250_ms(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.1, 250.0, (double)hal_host_watchdog_bite() / 16000.0);
 }
 
-static void test_eeprom_is_busy_for_a_write(void)
+TEST(test_eeprom_is_busy_for_a_write)
 {
     TEST_ASSERT_TRUE(hal_eeprom_ready());
     TEST_ASSERT_EQUAL_UINT8(0xFF, hal_eeprom_read(1023));
@@ -137,7 +135,7 @@ static void test_eeprom_is_busy_for_a_write(void)
     TEST_ASSERT_EQUAL_UINT8(0x5A, hal_eeprom_read(1023));
 }
 
-static void test_receive_ring_counts_what_it_loses(void)
+TEST(test_receive_ring_counts_what_it_loses)
 {
     uint8_t byte;
     for (int i = 0; i < 10; i++) {
@@ -153,21 +151,4 @@ static void test_receive_ring_counts_what_it_loses(void)
     }
     TEST_ASSERT_EQUAL(63, received);
     TEST_ASSERT_EQUAL_UINT8(37, hal_uart_rx_lost());
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_time_comparison_over_the_wrap);
-    RUN_TEST(test_clock_crosses_the_wrap);
-    RUN_TEST(test_alarm_wakes_at_its_moment);
-    RUN_TEST(test_alarm_that_is_moved);
-    RUN_TEST(test_wake_before_sleep_is_not_lost);
-    RUN_TEST(test_reset_cause_from_mcusr);
-    RUN_TEST(test_reset_cause_from_the_breadcrumb);
-    RUN_TEST(test_watchdog_resets_in_a_row_are_counted);
-    RUN_TEST(test_watchdog_bites_after_250_ms);
-    RUN_TEST(test_eeprom_is_busy_for_a_write);
-    RUN_TEST(test_receive_ring_counts_what_it_loses);
-    return UNITY_END();
 }

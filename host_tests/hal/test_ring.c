@@ -1,6 +1,6 @@
 /* The byte ring of the UART: fill, wrap, overflow, staged bytes, every position of the indices. */
 #include "hal_ring.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { SIZE = 16, MASK = SIZE - 1 };
 
@@ -12,14 +12,12 @@ void setUp(void)
     ring = (hal_ring_t){ 0, 0, 0 };
 }
 
-void tearDown(void) {}
-
 static void start_at(uint8_t index)
 {
     ring = (hal_ring_t){ index, index, index };
 }
 
-static void test_room_and_order_at_every_position(void)
+TEST(test_room_and_order_at_every_position)
 {
     for (uint8_t start = 0; start < SIZE; start++) {
         start_at(start);
@@ -37,7 +35,7 @@ static void test_room_and_order_at_every_position(void)
     }
 }
 
-static void test_staged_bytes_are_invisible_until_committed(void)
+TEST(test_staged_bytes_are_invisible_until_committed)
 {
     start_at(SIZE - 1);
     hal_ring_stage(&ring, buffer, MASK, 1);
@@ -46,7 +44,7 @@ static void test_staged_bytes_are_invisible_until_committed(void)
     TEST_ASSERT_FALSE(hal_ring_empty(&ring));
 }
 
-static void test_discard_takes_back_only_what_is_staged(void)
+TEST(test_discard_takes_back_only_what_is_staged)
 {
     start_at(3);
     hal_ring_stage(&ring, buffer, MASK, 7);
@@ -59,7 +57,7 @@ static void test_discard_takes_back_only_what_is_staged(void)
 }
 
 /* The transmit ring has 256 slots: the mask is all ones and the indices wrap by themselves. */
-static void test_ring_of_256(void)
+TEST(test_ring_of_256)
 {
     static uint8_t big[256];
     start_at(250);
@@ -72,14 +70,4 @@ static void test_ring_of_256(void)
         TEST_ASSERT_EQUAL_UINT8(n, hal_ring_take(&ring, big, 0xFF));
     }
     TEST_ASSERT_TRUE(hal_ring_empty(&ring));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_room_and_order_at_every_position);
-    RUN_TEST(test_staged_bytes_are_invisible_until_committed);
-    RUN_TEST(test_discard_takes_back_only_what_is_staged);
-    RUN_TEST(test_ring_of_256);
-    return UNITY_END();
 }

@@ -129,6 +129,27 @@ double reference_lyapunov(const reference_filter_t *f, double r_true)
     return system.partialPivLu().solve(right)(0);
 }
 
+reference_filter_t reference_table_1(double factor)
+{
+    reference_filter_t f{};
+    f.period_s = 0.0247;
+    f.r = 0.0064;
+    f.r_gain = factor * 0.0064;
+    f.q[3] = 0.0009;
+    f.x[0] = 2.8;
+    f.x[1] = 0.008;
+    f.p[0] = 0.7;
+    f.p[3] = 0.04;
+    return f;
+}
+
+void reference_settle(reference_filter_t *f)
+{
+    for (int k = 0; k < 5000; k++) {
+        reference_step(f, 0.0);
+    }
+}
+
 void reference_library(reference_filter_t *f, double rate_hz, double r, double q, double gate_sigma, int reacquire,
                        double rate_max, double x0)
 {

@@ -47,6 +47,12 @@ void reference_coast(reference_filter_t *f);
  */
 double reference_lyapunov(const reference_filter_t *f, double r_true);
 
+/* Table 1 of paper 002, Q on the rate; the gain is for noise of so many times R: 1, or 60.85 (linear robust filter). */
+reference_filter_t reference_table_1(double factor);
+
+/* 5,000 zeros. */
+void reference_settle(reference_filter_t *f);
+
 /*
  * kf and sprf as lib/filters defines them (rate in LSB/s inside), running from x0 with P11 = R and the library's rate
  * spread.

@@ -2,17 +2,15 @@
 #include <stddef.h>
 
 #include "support/sensor_bus.h"
-#include "unity.h"
+#include "support/test.h"
 
 void setUp(void)
 {
     sensor_bus_begin();
 }
 
-void tearDown(void) {}
-
 /* p. 21, 27: stream mode keeps the newest 33; entries; one triplet per burst; DATA_READY while anything is left */
-static void test_p21_stream_fifo(void)
+TEST(test_p21_stream_fifo)
 {
     sensor_measure(FULL_RES_16G, 0x8A);
     for (int i = 1; i <= 40; i++) {
@@ -37,7 +35,7 @@ static void test_p21_stream_fifo(void)
 }
 
 /* p. 21: FIFO mode stops collecting when it is full, so the oldest stay */
-static void test_p21_fifo_mode_keeps_the_oldest(void)
+TEST(test_p21_fifo_mode_keeps_the_oldest)
 {
     sensor_measure(FULL_RES_16G, 0x5F);
     for (int i = 1; i <= 40; i++) {
@@ -54,7 +52,7 @@ static void test_p21_fifo_mode_keeps_the_oldest(void)
 }
 
 /* p. 21: trigger mode keeps the last n before the event, then fills up like FIFO mode; bypass resets it */
-static void test_p21_trigger_mode(void)
+TEST(test_p21_trigger_mode)
 {
     sensor_write(INT_MAP, 0x10);                   /* activity on INT2 */
     sensor_measure(FULL_RES_16G, 0xC0 | 0x20 | 4); /* trigger on INT2, 4 samples */
@@ -80,7 +78,7 @@ static void test_p21_trigger_mode(void)
 }
 
 /* p. 21: a burst ends at the step from 0x37 to 0x38, so reading on shows FIFO_CTL and the entries that are left */
-static void test_p21_reading_on_into_fifo_ctl_and_status(void)
+TEST(test_p21_reading_on_into_fifo_ctl_and_status)
 {
     sensor_measure(FULL_RES_16G, 0x8A);
     sensor_tick(5, 6, 7);
@@ -97,7 +95,7 @@ static void test_p21_reading_on_into_fifo_ctl_and_status(void)
 }
 
 /* p. 27: a short read of a FIFO entry loses the rest of it */
-static void test_p27_short_read_loses_the_rest(void)
+TEST(test_p27_short_read_loses_the_rest)
 {
     sensor_measure(FULL_RES_16G, 0x8A);
     sensor_tick(5, 6, 7);
@@ -110,7 +108,7 @@ static void test_p27_short_read_loses_the_rest(void)
  * A sample that arrives while the only entry is being read: nothing is torn or lost, and INT1 stays high without an
  * edge.
  */
-static void test_stream_fifo_sample_inside_a_burst(void)
+TEST(test_stream_fifo_sample_inside_a_burst)
 {
     sensor_measure(FULL_RES_16G, 0x8A);
     sensor_tick(0x0101, 0x0101, 0x0101);
@@ -127,7 +125,7 @@ static void test_stream_fifo_sample_inside_a_burst(void)
 }
 
 /* The same with the FIFO full: the burst still shows one sample, and exactly one is lost afterwards. */
-static void test_stream_fifo_full_inside_a_burst(void)
+TEST(test_stream_fifo_full_inside_a_burst)
 {
     sensor_measure(FULL_RES_16G, 0x8A);
     for (int i = 1; i <= 33; i++) {
@@ -145,7 +143,7 @@ static void test_stream_fifo_full_inside_a_burst(void)
 }
 
 /* p. 27: Samples = 0 sets the watermark at once; in bypass mode other values never do */
-static void test_p27_watermark_of_zero_and_in_bypass(void)
+TEST(test_p27_watermark_of_zero_and_in_bypass)
 {
     sensor_write(FIFO_CTL, 0x80);
     TEST_ASSERT_EQUAL_HEX8(WATERMARK, sensor_read(INT_SOURCE));
@@ -156,7 +154,7 @@ static void test_p27_watermark_of_zero_and_in_bypass(void)
 }
 
 /* p. 14, 21: standby keeps the FIFO, bypass clears it */
-static void test_p21_standby_keeps_bypass_clears(void)
+TEST(test_p21_standby_keeps_bypass_clears)
 {
     sensor_measure(FULL_RES_16G, 0x8A);
     sensor_tick(1, 0, 0);
@@ -172,7 +170,7 @@ static void test_p21_standby_keeps_bypass_clears(void)
 }
 
 /* A sample that arrives while the empty FIFO is being read does not tear the registers. */
-static void test_stream_fifo_empty_inside_a_burst(void)
+TEST(test_stream_fifo_empty_inside_a_burst)
 {
     sensor_measure(FULL_RES_16G, 0x8A);
     sensor_tick(0x0101, 0x0101, 0x0101);
@@ -186,20 +184,4 @@ static void test_stream_fifo_empty_inside_a_burst(void)
     adxl345_model_stop(&sensor_model);
     TEST_ASSERT_EQUAL_HEX8(1, sensor_read(FIFO_STATUS));
     TEST_ASSERT_EQUAL_INT16(0x0202, sensor_read_x());
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_p21_stream_fifo);
-    RUN_TEST(test_p21_fifo_mode_keeps_the_oldest);
-    RUN_TEST(test_p21_trigger_mode);
-    RUN_TEST(test_p21_reading_on_into_fifo_ctl_and_status);
-    RUN_TEST(test_p27_short_read_loses_the_rest);
-    RUN_TEST(test_stream_fifo_sample_inside_a_burst);
-    RUN_TEST(test_stream_fifo_full_inside_a_burst);
-    RUN_TEST(test_p27_watermark_of_zero_and_in_bypass);
-    RUN_TEST(test_p21_standby_keeps_bypass_clears);
-    RUN_TEST(test_stream_fifo_empty_inside_a_burst);
-    return UNITY_END();
 }

@@ -1,19 +1,16 @@
 /* The virtual ADXL345 against the data sheet, Rev. E; pages in the comments. */
 #include <stddef.h>
-#include <string.h>
 
 #include "support/sensor_bus.h"
-#include "unity.h"
+#include "support/test.h"
 
 void setUp(void)
 {
     sensor_bus_begin();
 }
 
-void tearDown(void) {}
-
 /* p. 23, register map: DEVID 0xE5, BW_RATE 0x0A, INT_SOURCE 0x02, everything else 0 */
-static void test_p23_reset_values(void)
+TEST(test_p23_reset_values)
 {
     for (uint8_t address = 0; address < 64; address++) {
         uint8_t expected = address == DEVID ? 0xE5 : address == BW_RATE ? 0x0A : address == INT_SOURCE ? 0x02 : 0x00;
@@ -22,7 +19,7 @@ static void test_p23_reset_values(void)
 }
 
 /* p. 23: 0x01..0x1C are reserved; DEVID, ACT_TAP_STATUS, INT_SOURCE, the data and FIFO_STATUS are read only */
-static void test_p23_read_only_and_reserved_registers(void)
+TEST(test_p23_read_only_and_reserved_registers)
 {
     for (uint8_t address = 0; address < 64; address++) {
         bool read_only = address < 0x1D || address == ACT_TAP_STATUS || address == INT_SOURCE ||
@@ -35,7 +32,7 @@ static void test_p23_read_only_and_reserved_registers(void)
 }
 
 /* p. 24-27: bits that the register descriptions give as 0 stay 0 */
-static void test_p24_unused_bits(void)
+TEST(test_p24_unused_bits)
 {
     sensor_write(BW_RATE, 0xFF);
     TEST_ASSERT_EQUAL_HEX8(0x1F, sensor_read(BW_RATE));
@@ -46,7 +43,7 @@ static void test_p24_unused_bits(void)
 }
 
 /* p. 18: addresses 0x53 and 0x1D; a byte to another address is not acknowledged */
-static void test_p18_address(void)
+TEST(test_p18_address)
 {
     TEST_ASSERT_FALSE(adxl345_model_start(&sensor_model, 0x1D << 1));
     TEST_ASSERT_FALSE(adxl345_model_write(&sensor_model, 0x00));
@@ -58,7 +55,7 @@ static void test_p18_address(void)
 }
 
 /* p. 18-19, multiple-byte access: the pointer counts up and stays over a STOP */
-static void test_p18_pointer(void)
+TEST(test_p18_pointer)
 {
     TEST_ASSERT_TRUE(adxl345_model_start(&sensor_model, ADDRESS_WRITE));
     TEST_ASSERT_TRUE(adxl345_model_write(&sensor_model, OFSX));
@@ -77,7 +74,7 @@ static void test_p18_pointer(void)
 }
 
 /* p. 14, Table 7: 0x6 is 6.25 Hz and every step doubles up to 0xF, 3200 Hz; p. 25: standby and sleep give no data */
-static void test_p14_output_data_rate(void)
+TEST(test_p14_output_data_rate)
 {
     TEST_ASSERT_EQUAL_DOUBLE(0.0, adxl345_model_odr_hz(&sensor_model));
     TEST_ASSERT_FALSE(sensor_tick(1, 2, 3));
@@ -96,7 +93,7 @@ static void test_p14_output_data_rate(void)
 }
 
 /* p. 26: DATA_READY is a latched level that reading the data clears; the pin follows INT_ENABLE, the bit does not */
-static void test_p26_data_ready(void)
+TEST(test_p26_data_ready)
 {
     sensor_write(POWER_CTL, MEASURE);
     TEST_ASSERT_TRUE(sensor_tick(10, -20, 256));
@@ -121,7 +118,7 @@ static void test_p26_data_ready(void)
 }
 
 /* p. 26: INT_MAP 1 sends a bit to INT2; p. 27: INT_INVERT makes the pins active low */
-static void test_p26_map_and_invert(void)
+TEST(test_p26_map_and_invert)
 {
     sensor_write(INT_MAP, DATA_READY);
     sensor_measure(FULL_RES_16G, 0x00);
@@ -136,7 +133,7 @@ static void test_p26_map_and_invert(void)
 }
 
 /* p. 21: in bypass mode overrun means that new data replaced unread data */
-static void test_p21_overrun_in_bypass(void)
+TEST(test_p21_overrun_in_bypass)
 {
     sensor_measure(FULL_RES_16G, 0x00);
     sensor_tick(1, 0, 0);
@@ -149,7 +146,7 @@ static void test_p21_overrun_in_bypass(void)
 }
 
 /* p. 21: a burst is not torn by a sample that arrives in it; that sample is there afterwards, with its own edge */
-static void test_p21_burst_is_not_torn(void)
+TEST(test_p21_burst_is_not_torn)
 {
     sensor_measure(FULL_RES_16G, 0x00);
     sensor_tick(0x0101, 0x0101, 0x0101);
@@ -167,7 +164,7 @@ static void test_p21_burst_is_not_torn(void)
 }
 
 /* The twin: without shadowing the burst mixes two samples, and the model counts it. */
-static void test_without_shadowing_a_burst_is_torn(void)
+TEST(test_without_shadowing_a_burst_is_torn)
 {
     sensor_model.shadowing = false;
     sensor_measure(FULL_RES_16G, 0x00);
@@ -181,7 +178,7 @@ static void test_without_shadowing_a_burst_is_torn(void)
 }
 
 /* p. 4, 27: full resolution is 256 LSB/g with rails at the range; 10-bit mode divides by 2, 4, 8, has rails at 511 */
-static void test_p4_range_and_resolution(void)
+TEST(test_p4_range_and_resolution)
 {
     static const struct {
         uint8_t format;
@@ -201,7 +198,7 @@ static void test_p4_range_and_resolution(void)
 }
 
 /* p. 27: Justify puts the sign bit at bit 15: 10 bits shift by 6, full resolution at 16 g (13 bits) by 3 */
-static void test_p27_left_justified(void)
+TEST(test_p27_left_justified)
 {
     sensor_measure(0x04, 0x00);
     sensor_tick(-3, 0, 0);
@@ -214,7 +211,7 @@ static void test_p27_left_justified(void)
 }
 
 /* p. 32: at 1600 and 3200 Hz the LSB is always 0, in full resolution and in +-2 g 10-bit mode, not in the others */
-static void test_p32_lsb_at_1600_and_3200_hz(void)
+TEST(test_p32_lsb_at_1600_and_3200_hz)
 {
     for (uint8_t code = 0x0D; code <= 0x0F; code++) {
         sensor_write(BW_RATE, code);
@@ -233,7 +230,7 @@ static void test_p32_lsb_at_1600_and_3200_hz(void)
 }
 
 /* p. 24: offsets are 15.6 mg per LSB (4 LSB of 3.9 mg) at any range, added before the rails */
-static void test_p24_offsets(void)
+TEST(test_p24_offsets)
 {
     sensor_write(OFSX, 0x7F);
     sensor_write(OFSX + 1, 0x80);
@@ -255,7 +252,7 @@ static void test_p24_offsets(void)
  * Limits of the self-test shift in full resolution at 2.5 V (p. 5 and Table 15, p. 31), times 1.77 on x and y and 1.47
  * on z for 3.3 V (Table 14): 89..955, -955..-89, 111..1286.
  */
-static void test_p31_self_test_shift_is_within_the_limits(void)
+TEST(test_p31_self_test_shift_is_within_the_limits)
 {
     sensor_measure(FULL_RES_16G | 0x80, 0x00);
     for (int sample = 1; sample <= 5; sample++) {
@@ -268,7 +265,7 @@ static void test_p31_self_test_shift_is_within_the_limits(void)
 }
 
 /* 1.1 x 200 + 30 = 250; 0.9 x -100 - 7 = -97; 1.1 x 5 = 5.5, half up 6; OFSX adds 4; self-test comes on top of it. */
-static void test_a_part_has_gain_offset_and_shift_of_its_own(void)
+TEST(test_a_part_has_gain_offset_and_shift_of_its_own)
 {
     sensor_model.part = (adxl345_part_t){ { 1.1, 0.9, 1.1 }, { 30, -7, 0 }, { 100, 0, -50 } };
     sensor_write(OFSX, 1);
@@ -295,7 +292,7 @@ static void test_a_part_has_gain_offset_and_shift_of_its_own(void)
  * Power off: no acknowledge, pins low even when inverted. Power on: registers at reset, FIFO empty (p. 13, p. 30 for
  * offsets).
  */
-static void test_power_cycle(void)
+TEST(test_power_cycle)
 {
     sensor_write(OFSX, 9);
     sensor_measure(FULL_RES_16G | 0x20, 0x8A);
@@ -311,7 +308,7 @@ static void test_power_cycle(void)
 }
 
 /* A transfer that ends without STOP (the MCU was reset): the next START finds the sensor in order. */
-static void test_start_after_an_abandoned_transfer(void)
+TEST(test_start_after_an_abandoned_transfer)
 {
     sensor_measure(FULL_RES_16G, 0x8A);
     sensor_tick(1, 0, 0);
@@ -322,7 +319,7 @@ static void test_start_after_an_abandoned_transfer(void)
     TEST_ASSERT_EQUAL_INT16(2, sensor_read_x());
 }
 
-static void test_writes_while_measuring_are_counted(void)
+TEST(test_writes_while_measuring_are_counted)
 {
     sensor_measure(FULL_RES_16G, 0x8A);
     TEST_ASSERT_EQUAL_UINT32(0, sensor_model.writes_while_measuring);
@@ -331,30 +328,4 @@ static void test_writes_while_measuring_are_counted(void)
     sensor_write(POWER_CTL, 0x00);
     sensor_write(BW_RATE, 0x0A);
     TEST_ASSERT_EQUAL_UINT32(1, sensor_model.writes_while_measuring);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_p23_reset_values);
-    RUN_TEST(test_p23_read_only_and_reserved_registers);
-    RUN_TEST(test_p24_unused_bits);
-    RUN_TEST(test_p18_address);
-    RUN_TEST(test_p18_pointer);
-    RUN_TEST(test_p14_output_data_rate);
-    RUN_TEST(test_p26_data_ready);
-    RUN_TEST(test_p26_map_and_invert);
-    RUN_TEST(test_p21_overrun_in_bypass);
-    RUN_TEST(test_p21_burst_is_not_torn);
-    RUN_TEST(test_without_shadowing_a_burst_is_torn);
-    RUN_TEST(test_p4_range_and_resolution);
-    RUN_TEST(test_p27_left_justified);
-    RUN_TEST(test_p32_lsb_at_1600_and_3200_hz);
-    RUN_TEST(test_p24_offsets);
-    RUN_TEST(test_p31_self_test_shift_is_within_the_limits);
-    RUN_TEST(test_a_part_has_gain_offset_and_shift_of_its_own);
-    RUN_TEST(test_power_cycle);
-    RUN_TEST(test_start_after_an_abandoned_transfer);
-    RUN_TEST(test_writes_while_measuring_are_counted);
-    return UNITY_END();
 }

@@ -1,6 +1,6 @@
 /* What does and what does not end or clear something in the virtual ADXL345. Pages: data sheet, Rev. E. */
 #include "support/sensor_bus.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { STREAM_MODE = 0x8A };
 
@@ -15,7 +15,7 @@ void tearDown(void)
 }
 
 /* p. 21: only bypass mode clears the FIFO; standby and Measure again leave what it holds. */
-static void test_p21_entering_measure_does_not_clear_the_fifo(void)
+TEST(test_p21_entering_measure_does_not_clear_the_fifo)
 {
     sensor_measure(FULL_RES_16G, STREAM_MODE);
     sensor_tick(1, 0, 0);
@@ -32,7 +32,7 @@ static void test_p21_entering_measure_does_not_clear_the_fifo(void)
 }
 
 /* p. 26: "DATA_READY ... cleared only when the data is read": not by reading INT_SOURCE, with the FIFO on either. */
-static void test_p26_reading_int_source_keeps_data_ready(void)
+TEST(test_p26_reading_int_source_keeps_data_ready)
 {
     sensor_measure(FULL_RES_16G, STREAM_MODE);
     sensor_tick(1, 0, 0);
@@ -46,7 +46,7 @@ static void test_p26_reading_int_source_keeps_data_ready(void)
 }
 
 /* p. 26: the bits of events are those that reading INT_SOURCE clears. */
-static void test_p26_reading_int_source_clears_events(void)
+TEST(test_p26_reading_int_source_clears_events)
 {
     sensor_measure(FULL_RES_16G, STREAM_MODE);
     sensor_tick(1, 0, 0);
@@ -56,7 +56,7 @@ static void test_p26_reading_int_source_clears_events(void)
 }
 
 /* p. 21: the read of an entry ends with the transfer or a repeated START. Two bytes read: the entry is gone. */
-static void test_p21_a_repeated_start_ends_a_data_read(void)
+TEST(test_p21_a_repeated_start_ends_a_data_read)
 {
     sensor_measure(FULL_RES_16G, STREAM_MODE);
     sensor_tick(1, 0, 0);
@@ -73,14 +73,4 @@ static void test_p21_a_repeated_start_ends_a_data_read(void)
     adxl345_model_stop(&sensor_model);
     TEST_ASSERT_EQUAL_UINT8(0, sensor_model.fifo_count);
     TEST_ASSERT_EQUAL_UINT32(2, sensor_model.data_reads);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_p21_entering_measure_does_not_clear_the_fifo);
-    RUN_TEST(test_p26_reading_int_source_keeps_data_ready);
-    RUN_TEST(test_p26_reading_int_source_clears_events);
-    RUN_TEST(test_p21_a_repeated_start_ends_a_data_read);
-    return UNITY_END();
 }

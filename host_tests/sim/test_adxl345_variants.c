@@ -3,14 +3,12 @@
 
 #include "adxl345_variants.h"
 #include "support/sensor_bus.h"
-#include "unity.h"
+#include "support/test.h"
 
 void setUp(void)
 {
     sensor_bus_begin();
 }
-
-void tearDown(void) {}
 
 static void become(const char *name)
 {
@@ -29,7 +27,7 @@ static int16_t reads(uint8_t format, int g)
     return lsb;
 }
 
-static void test_the_name_decides(void)
+TEST(test_the_name_decides)
 {
     TEST_ASSERT_NULL(adxl345_variant_named("adxl34"));
     TEST_ASSERT_NULL(adxl345_variant_named("adxl3455"));
@@ -40,7 +38,7 @@ static void test_the_name_decides(void)
     TEST_ASSERT_EQUAL_PTR(adxl345_itself, adxl345_variant_named("adxl345"));
 }
 
-static void test_devid(void)
+TEST(test_devid)
 {
     static const struct {
         const char *name;
@@ -58,7 +56,7 @@ static void test_devid(void)
 }
 
 /* 3.9 mg/LSB in full resolution, 31.2 mg/LSB in 10 bits at 16 g */
-static void test_scale_of_those_like_an_adxl345(void)
+TEST(test_scale_of_those_like_an_adxl345)
 {
     static const char *const names[] = { "adxl345", "adxl343", "adxl344", "adxl346" };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -71,7 +69,7 @@ static void test_scale_of_those_like_an_adxl345(void)
 }
 
 /* 2.9 mg/LSB in full resolution at each range; 10 bits at 1.5 g and 13 at 12 g */
-static void test_scale_of_an_adxl312(void)
+TEST(test_scale_of_an_adxl312)
 {
     become("adxl312");
     TEST_ASSERT_EQUAL_INT16(345, reads(0x0B, 1));
@@ -85,7 +83,7 @@ static void test_scale_of_an_adxl312(void)
 }
 
 /* 49 and 48.83 mg/LSB in 13 bits, whatever is written; DATA_FORMAT holds what was written */
-static void test_scale_of_those_of_200_g(void)
+TEST(test_scale_of_those_of_200_g)
 {
     static const char *const names[] = { "adxl375", "adxl314" };
     static const uint8_t formats[] = { 0x0B, 0x00, 0x08, 0x03 };
@@ -101,7 +99,7 @@ static void test_scale_of_those_of_200_g(void)
 }
 
 /* in g, within the limits of each data sheet; x and y of those of 200 g have none */
-static void test_self_test(void)
+TEST(test_self_test)
 {
     static const struct {
         const char *name;
@@ -125,7 +123,7 @@ static void test_self_test(void)
     }
 }
 
-static void test_another_in_its_place_has_just_been_powered(void)
+TEST(test_another_in_its_place_has_just_been_powered)
 {
     sensor_measure(FULL_RES_16G, 0x80);
     sensor_tick(1, 2, 3);
@@ -133,17 +131,4 @@ static void test_another_in_its_place_has_just_been_powered(void)
     TEST_ASSERT_EQUAL_HEX8(0x00, sensor_read(POWER_CTL));
     TEST_ASSERT_EQUAL_HEX8(0x00, sensor_read(FIFO_STATUS));
     TEST_ASSERT_EQUAL_DOUBLE(0.0, adxl345_model_odr_hz(&sensor_model));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_the_name_decides);
-    RUN_TEST(test_devid);
-    RUN_TEST(test_scale_of_those_like_an_adxl345);
-    RUN_TEST(test_scale_of_an_adxl312);
-    RUN_TEST(test_scale_of_those_of_200_g);
-    RUN_TEST(test_self_test);
-    RUN_TEST(test_another_in_its_place_has_just_been_powered);
-    return UNITY_END();
 }

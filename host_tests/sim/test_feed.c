@@ -3,16 +3,12 @@
 #include <string.h>
 
 #include "feed.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { ROWS_MAX = 50, STEP_US = 10000 };
 
 static stream_row_t rows[ROWS_MAX];
 static stream_t stream;
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* A stream of 100 Hz; x is the row's number from 1 on. */
 static void load(size_t count)
@@ -55,7 +51,7 @@ static void assert_tick(feed_t *feed, uint64_t now_us, feed_result_t result, siz
     }
 }
 
-static void test_feed_mode_at_the_5_percent_border(void)
+TEST(test_feed_mode_at_the_5_percent_border)
 {
     load(3); /* 5 % of the sensor's rate */
     TEST_ASSERT_EQUAL_INT(FEED_ROW_PER_TICK, feed_of(100.0, false).mode);
@@ -65,7 +61,7 @@ static void test_feed_mode_at_the_5_percent_border(void)
     TEST_ASSERT_EQUAL_INT(FEED_IN_FORCE, feed_of(95.2, false).mode);
 }
 
-static void test_feed_gaps_and_missing_rows_are_silent_ticks(void)
+TEST(test_feed_gaps_and_missing_rows_are_silent_ticks)
 {
     /* 10 ms steps; rows 2 and 3 are 35 ms apart: 35/10 rounds to 4, so three ticks are silent; row 4 marked missing */
     static const uint64_t t_us[] = { 0, 10000, 20000, 55000, 65000, 75000 };
@@ -85,7 +81,7 @@ static void test_feed_gaps_and_missing_rows_are_silent_ticks(void)
     assert_tick(&feed, 0, FEED_END, 0);
 }
 
-static void test_feed_jitter_below_half_a_step_is_no_gap(void)
+TEST(test_feed_jitter_below_half_a_step_is_no_gap)
 {
     static const uint64_t t_us[] = { 0, 14900, 20000, 30000, 40000 };
     load_at(t_us, 5);
@@ -95,7 +91,7 @@ static void test_feed_jitter_below_half_a_step_is_no_gap(void)
     }
 }
 
-static void test_feed_loops(void)
+TEST(test_feed_loops)
 {
     load(3);
     feed_t feed = feed_of(100.0, true);
@@ -111,7 +107,7 @@ static void test_feed_loops(void)
     assert_tick(&feed, 560000, FEED_SAMPLE, 0);
 }
 
-static void test_feed_in_force_takes_the_newest_row_not_later(void)
+TEST(test_feed_in_force_takes_the_newest_row_not_later)
 {
     load(4);
     feed_t feed = feed_of(400.0, false);
@@ -122,7 +118,7 @@ static void test_feed_in_force_takes_the_newest_row_not_later(void)
     assert_tick(&feed, 77000 + 2500 * 16, FEED_END, 0);
 }
 
-static void test_feed_keeps_its_place_when_the_rate_changes(void)
+TEST(test_feed_keeps_its_place_when_the_rate_changes)
 {
     load(6);
     feed_t feed = feed_of(100.0, false);
@@ -177,7 +173,7 @@ static unsigned repeated(double rate_hz, int ticks, int axis, int32_t *sum)
 }
 
 /* Of one axis that moves, at any rate: it never repeats within a row, and in the mean is what the stream says. */
-static void test_a_row_measured_again_has_noise(void)
+TEST(test_a_row_measured_again_has_noise)
 {
     static const double rates_hz[] = { 200.0, 400.0, 800.0 };
     for (size_t k = 0; k < 3; k++) {
@@ -191,7 +187,7 @@ static void test_a_row_measured_again_has_noise(void)
 }
 
 /* A sensor that hangs, and an axis that does, are frozen at any rate. */
-static void test_what_is_frozen_stays_so(void)
+TEST(test_what_is_frozen_stays_so)
 {
     load_rows(50, false);
     int32_t sum = 0;
@@ -202,7 +198,7 @@ static void test_what_is_frozen_stays_so(void)
     TEST_ASSERT_EQUAL_INT32(0, sum);
 }
 
-static void test_at_the_rate_of_the_stream_readings_are_its_own(void)
+TEST(test_at_the_rate_of_the_stream_readings_are_its_own)
 {
     static const int16_t readings[4][3] = { { 1, 2, 3 }, { 1, 2, 3 }, { 2, 3, 4 }, { 2, 3, 4 } };
     load_readings(readings, 4);
@@ -218,7 +214,7 @@ static void test_at_the_rate_of_the_stream_readings_are_its_own(void)
 }
 
 /* A reading at a rail stays there and none comes to it; a sensor without power is one, and none becomes one. */
-static void test_noise_changes_no_meaning(void)
+TEST(test_noise_changes_no_meaning)
 {
     static const int16_t readings[7][3] = { { -1, -1, -1 },         { 511, -512, 0 }, { 4095, 1024, 510 },
                                             { -4096, -511, -2047 }, { -1, -1, 0 },    { -1, -2, -1 },
@@ -245,20 +241,4 @@ static void test_noise_changes_no_meaning(void)
         TEST_ASSERT_EQUAL(row == 0 || row == 6, memcmp(lsb, off_now, sizeof lsb) == 0);
     }
     TEST_ASSERT_EACH_EQUAL_UINT8(true, reached, sizeof reached);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_feed_mode_at_the_5_percent_border);
-    RUN_TEST(test_feed_gaps_and_missing_rows_are_silent_ticks);
-    RUN_TEST(test_feed_jitter_below_half_a_step_is_no_gap);
-    RUN_TEST(test_feed_loops);
-    RUN_TEST(test_feed_in_force_takes_the_newest_row_not_later);
-    RUN_TEST(test_feed_keeps_its_place_when_the_rate_changes);
-    RUN_TEST(test_a_row_measured_again_has_noise);
-    RUN_TEST(test_what_is_frozen_stays_so);
-    RUN_TEST(test_at_the_rate_of_the_stream_readings_are_its_own);
-    RUN_TEST(test_noise_changes_no_meaning);
-    return UNITY_END();
 }

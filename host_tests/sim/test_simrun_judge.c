@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "simrun_judge.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { US = 16, PERIOD_US = 10000, SAMPLES = 10 };
 
@@ -22,8 +22,6 @@ void setUp(void)
                                 .lsb = { (int16_t)i, (int16_t)-i, (int16_t)(256 + i) } };
     }
 }
-
-void tearDown(void) {}
 
 /* The readings of sample i in a row stamped t_us by a clock that begins at 0, sent `late_us` after that. */
 static row_t row_of(int i, uint32_t t_us, unsigned flags, uint32_t late_us)
@@ -53,7 +51,7 @@ static judge_verdict_t verdict_of(row_t row)
     return next_verdict_of(row);
 }
 
-static void a_row_of_its_sample_is_right(void)
+TEST(a_row_of_its_sample_is_right)
 {
     for (int i = 0; i < SAMPLES; i++) {
         TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(i, (uint32_t)(i + 1) * PERIOD_US + 6u, 0, 5000)));
@@ -62,7 +60,7 @@ static void a_row_of_its_sample_is_right(void)
     TEST_ASSERT_FALSE(judge.any_fault);
 }
 
-static void one_reading_that_was_never_latched_is_wrong(void)
+TEST(one_reading_that_was_never_latched_is_wrong)
 {
     for (int axis = 0; axis < 3; axis++) {
         row_t row = row_of(4, 50000, 0, 5000);
@@ -73,14 +71,14 @@ static void one_reading_that_was_never_latched_is_wrong(void)
     TEST_ASSERT_EQUAL_UINT32(3, judge_judged(&judge));
 }
 
-static void readings_of_different_samples_are_wrong(void)
+TEST(readings_of_different_samples_are_wrong)
 {
     row_t row = row_of(4, 50000, 0, 5000);
     row.lsb[2] = served[3].lsb[2];
     TEST_ASSERT_EQUAL(JUDGE_WRONG, verdict_of(row));
 }
 
-static void a_sample_is_stale_after_two_periods(void)
+TEST(a_sample_is_stale_after_two_periods)
 {
     /* sample 2 was latched at 30 ms */
     TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(2, 50000, 0, 5000)));
@@ -93,7 +91,7 @@ static void a_sample_is_stale_after_two_periods(void)
     TEST_ASSERT_EQUAL(JUDGE_RIGHT, judge_row(&judge, &row, served, SAMPLES, 1250));
 }
 
-static void an_equal_sample_within_time_is_enough_and_an_older_one_is_not(void)
+TEST(an_equal_sample_within_time_is_enough_and_an_older_one_is_not)
 {
     memcpy(served[5].lsb, served[1].lsb, sizeof served[5].lsb);
     TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(1, 60000, 0, 2000)));
@@ -102,7 +100,7 @@ static void an_equal_sample_within_time_is_enough_and_an_older_one_is_not(void)
     TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(1, 20000, 0, 60000)));
 }
 
-static void a_sample_of_the_future_is_wrong(void)
+TEST(a_sample_of_the_future_is_wrong)
 {
     /* sample 6 comes at 70 ms: this row is sent before; the next is sent after, with a stamp that lies */
     TEST_ASSERT_EQUAL(JUDGE_WRONG, verdict_of(row_of(6, 69000, 0, 999)));
@@ -110,7 +108,7 @@ static void a_sample_of_the_future_is_wrong(void)
     TEST_ASSERT_EQUAL(JUDGE_RIGHT, verdict_of(row_of(6, 40000, 0, 40000)));
 }
 
-static void only_five_flags_disown_a_row(void)
+TEST(only_five_flags_disown_a_row)
 {
     for (unsigned bit = 0; bit < 11; bit++) {
         unsigned flag = 1u << bit;
@@ -122,7 +120,7 @@ static void only_five_flags_disown_a_row(void)
     TEST_ASSERT_EQUAL_UINT32(6, judge_judged(&judge));
 }
 
-static void a_sample_delivered_twice_is_at_fault(void)
+TEST(a_sample_delivered_twice_is_at_fault)
 {
     TEST_ASSERT_EQUAL(JUDGE_RIGHT, next_verdict_of(row_of(4, 50000, 0, 5000)));
     TEST_ASSERT_EQUAL(JUDGE_TWICE, next_verdict_of(row_of(4, 50000, 0, 5000)));
@@ -135,13 +133,13 @@ static void a_sample_delivered_twice_is_at_fault(void)
     TEST_ASSERT_NOT_NULL(strstr(judge_summary(&judge), "another row has shown this sample already"));
 }
 
-static void a_row_that_disowns_its_readings_shows_no_sample(void)
+TEST(a_row_that_disowns_its_readings_shows_no_sample)
 {
     TEST_ASSERT_EQUAL(JUDGE_DISOWNED_ROW, next_verdict_of(row_of(4, 50000, 1, 5000)));
     TEST_ASSERT_EQUAL(JUDGE_RIGHT, next_verdict_of(row_of(4, 50000, 0, 5000)));
 }
 
-static void as_many_rows_as_equal_samples_are_right(void)
+TEST(as_many_rows_as_equal_samples_are_right)
 {
     for (int i = 3; i < 7; i++) {
         memcpy(served[i].lsb, served[3].lsb, sizeof served[i].lsb);
@@ -152,7 +150,7 @@ static void as_many_rows_as_equal_samples_are_right(void)
     TEST_ASSERT_EQUAL(JUDGE_TWICE, next_verdict_of(row_of(3, 75000, 0, 5000)));
 }
 
-static void of_equal_samples_a_row_takes_the_oldest_in_time(void)
+TEST(of_equal_samples_a_row_takes_the_oldest_in_time)
 {
     memcpy(served[5].lsb, served[3].lsb, sizeof served[5].lsb);
     /* 55 ms is within two periods of both 40 and 60 ms, 65 ms of the second alone */
@@ -162,7 +160,7 @@ static void of_equal_samples_a_row_takes_the_oldest_in_time(void)
     TEST_ASSERT_EQUAL(JUDGE_RIGHT, next_verdict_of(row_of(3, 65000, 0, 9000)));
 }
 
-static void steps_back_are_counted_in_every_row(void)
+TEST(steps_back_are_counted_in_every_row)
 {
     (void)verdict_of(row_of(4, 50000, 0, 5000));
     (void)verdict_of(row_of(4, 50000, 0, 5000));
@@ -175,7 +173,7 @@ static void steps_back_are_counted_in_every_row(void)
     TEST_ASSERT_NOT_NULL(strstr(judge_summary(&judge), "stamped before the row ahead of it"));
 }
 
-static void a_clock_that_begins_elsewhere_may_wrap(void)
+TEST(a_clock_that_begins_elsewhere_may_wrap)
 {
     judge = (judge_t){ .cycles_per_us = US, .start_us = UINT32_MAX - 24999u };
     judge_clock_begins(&judge, 5000);
@@ -188,7 +186,7 @@ static void a_clock_that_begins_elsewhere_may_wrap(void)
     TEST_ASSERT_EQUAL_UINT32(75000, judge.last_us);
 }
 
-static void a_reset_begins_the_clock_anew(void)
+TEST(a_reset_begins_the_clock_anew)
 {
     (void)verdict_of(row_of(3, 40000, 0, 5000));
     judge_clock_begins(&judge, 5000 + 45000 * US);
@@ -200,7 +198,7 @@ static void a_reset_begins_the_clock_anew(void)
     TEST_ASSERT_EQUAL(JUDGE_STALE, verdict_of(row));
 }
 
-static void without_a_clock_nothing_is_judged(void)
+TEST(without_a_clock_nothing_is_judged)
 {
     judge = (judge_t){ .cycles_per_us = US };
     TEST_ASSERT_EQUAL(JUDGE_UNTIMED, verdict_of(row_of(3, 40000, 0, 5000)));
@@ -210,7 +208,7 @@ static void without_a_clock_nothing_is_judged(void)
     TEST_ASSERT_EQUAL(JUDGE_WRONG, judge_row(&judge, &row, NULL, 0, PERIOD_US));
 }
 
-static void the_first_row_at_fault_is_named(void)
+TEST(the_first_row_at_fault_is_named)
 {
     (void)verdict_of(row_of(0, 10000, 0, 5000));
     TEST_ASSERT_EQUAL_STRING("1 rows judged: 0 wrong, 0 stale, 0 twice; 0 steps back in time", judge_summary(&judge));
@@ -223,26 +221,4 @@ static void the_first_row_at_fault_is_named(void)
         "0,0,256, flags 8, stale: the sensor latched these readings, but more than two sample "
         "periods before the stamp",
         judge_summary(&judge));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(a_row_of_its_sample_is_right);
-    RUN_TEST(one_reading_that_was_never_latched_is_wrong);
-    RUN_TEST(readings_of_different_samples_are_wrong);
-    RUN_TEST(a_sample_is_stale_after_two_periods);
-    RUN_TEST(an_equal_sample_within_time_is_enough_and_an_older_one_is_not);
-    RUN_TEST(a_sample_of_the_future_is_wrong);
-    RUN_TEST(only_five_flags_disown_a_row);
-    RUN_TEST(a_sample_delivered_twice_is_at_fault);
-    RUN_TEST(a_row_that_disowns_its_readings_shows_no_sample);
-    RUN_TEST(as_many_rows_as_equal_samples_are_right);
-    RUN_TEST(of_equal_samples_a_row_takes_the_oldest_in_time);
-    RUN_TEST(steps_back_are_counted_in_every_row);
-    RUN_TEST(a_clock_that_begins_elsewhere_may_wrap);
-    RUN_TEST(a_reset_begins_the_clock_anew);
-    RUN_TEST(without_a_clock_nothing_is_judged);
-    RUN_TEST(the_first_row_at_fault_is_named);
-    return UNITY_END();
 }

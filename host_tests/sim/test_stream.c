@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "stream.h"
-#include "unity.h"
+#include "support/test.h"
 
 static char path[] = "/tmp/test_stream_XXXXXX";
 static stream_t stream;
@@ -58,7 +58,7 @@ static void assert_row(size_t i, uint64_t t_us, int x, int y, int z)
     TEST_ASSERT_EQUAL_INT16(z, stream.rows[i].lsb[2]);
 }
 
-static void test_plain_rows_and_rate(void)
+TEST(test_plain_rows_and_rate)
 {
     load("t_us,x,y,z\n5000,1,-2,256\n15000,-4096,4095,0\n25000,3,4,5\n");
     TEST_ASSERT_EQUAL_size_t(3, stream.count);
@@ -70,28 +70,28 @@ static void test_plain_rows_and_rate(void)
     TEST_ASSERT_FALSE(stream.has_truth);
 }
 
-static void test_rate_is_the_median_step(void)
+TEST(test_rate_is_the_median_step)
 {
     /* steps 2500, 2500, 40000, 2400, 2500: median 2500 us = 400 Hz, whatever the gap */
     load("t_us,x,y,z\n0,0,0,0\n2500,0,0,0\n5000,0,0,0\n45000,0,0,0\n47400,0,0,0\n49900,0,0,0\n");
     TEST_ASSERT_EQUAL_DOUBLE(400.0, stream.rate_hz);
 }
 
-static void test_one_row_has_no_rate(void)
+TEST(test_one_row_has_no_rate)
 {
     load("t_us,x,y,z\n77,1,2,3\n");
     TEST_ASSERT_EQUAL_DOUBLE(0.0, stream.rate_hz);
     assert_row(0, 0, 1, 2, 3);
 }
 
-static void test_columns_by_name_others_ignored(void)
+TEST(test_columns_by_name_others_ignored)
 {
     load("note,z_lsb,y_lsb,x_lsb,t_us,temperature\nhello,3,2,1,100,2.5\n,6,5,4,300,\n");
     assert_row(0, 0, 1, 2, 3);
     assert_row(1, 200, 4, 5, 6);
 }
 
-static void test_truth_columns(void)
+TEST(test_truth_columns)
 {
     load("t_us,x,y,z,roll_true_cdeg,pitch_true_cdeg\n0,0,0,256,-18000,9000\n1,0,0,256,18000,-9000\n");
     TEST_ASSERT_TRUE(stream.has_truth);
@@ -99,7 +99,7 @@ static void test_truth_columns(void)
     TEST_ASSERT_EQUAL_INT16(-9000, stream.rows[1].truth_cdeg[1]);
 }
 
-static void test_bom_crlf_comments_blank_lines_and_padding(void)
+TEST(test_bom_crlf_comments_blank_lines_and_padding)
 {
     load("\xEF\xBB\xBF# a comment\r\n\r\n t_us , x,y,z\r\n# another, with, commas\r\n 0, 1,\t2 , 3\r\n\r\n10,4,5,6");
     TEST_ASSERT_EQUAL_size_t(2, stream.count);
@@ -107,7 +107,7 @@ static void test_bom_crlf_comments_blank_lines_and_padding(void)
     TEST_ASSERT_EQUAL_UINT32(7, stream.rows[1].line);
 }
 
-static void test_wrap_of_the_32_bit_clock(void)
+TEST(test_wrap_of_the_32_bit_clock)
 {
     /* 4294960000 -> 2704: 2^32 - 4294960000 + 2704 = 10000 us on; and once more 2^32 later */
     load("t_us,x,y,z\n4294960000,1,0,0\n2704,2,0,0\n4294960000,3,0,0\n2704,4,0,0\n");
@@ -116,14 +116,14 @@ static void test_wrap_of_the_32_bit_clock(void)
     assert_row(3, 4294977296ull, 4, 0, 0);
 }
 
-static void test_step_back_of_exactly_2_31_is_an_error_one_more_is_a_wrap(void)
+TEST(test_step_back_of_exactly_2_31_is_an_error_one_more_is_a_wrap)
 {
     refused("t_us,x,y,z\n2147483648,0,0,0\n0,0,0,0\n", 3, "time goes backwards: 0 after 2147483648");
     load("t_us,x,y,z\n2147483649,0,0,0\n0,0,0,0\n");
     assert_row(1, 2147483647ull, 0, 0, 0);
 }
 
-static void test_repeated_header_begins_a_segment_one_period_later(void)
+TEST(test_repeated_header_begins_a_segment_one_period_later)
 {
     load("t_us,x,y,z\n100,1,0,0\n10100,2,0,0\n20100,3,0,0\nt_us,x,y,z\n7,4,0,0\n10007,5,0,0\n");
     TEST_ASSERT_EQUAL_size_t(5, stream.count);
@@ -131,14 +131,14 @@ static void test_repeated_header_begins_a_segment_one_period_later(void)
     assert_row(4, 40000, 5, 0, 0);
 }
 
-static void test_a_second_segment_may_have_other_columns(void)
+TEST(test_a_second_segment_may_have_other_columns)
 {
     load("t_us,x,y,z\n0,1,2,3\n10000,1,2,3\nx_lsb,y_lsb,z_lsb,t_us,flags\n4,5,6,500,0\n");
     assert_row(2, 20000, 4, 5, 6);
 }
 
 /* The firmware's own output: banner, header, rows, a restart, a reply, coasted and faulty rows. */
-static void test_output_of_the_firmware_is_a_stream(void)
+TEST(test_output_of_the_firmware_is_a_stream)
 {
     load("# tilt-uno 0.1.0: roll and pitch from an ADXL345\n"
          "# reset: power on\n"
@@ -161,33 +161,33 @@ static void test_output_of_the_firmware_is_a_stream(void)
     TEST_ASSERT_EQUAL_DOUBLE(100.0, stream.rate_hz);
 }
 
-static void test_refuses_a_file_that_is_not_there(void)
+TEST(test_refuses_a_file_that_is_not_there)
 {
     TEST_ASSERT_FALSE(stream_load(&stream, "/nowhere/stream.csv"));
     TEST_ASSERT_EQUAL_STRING("/nowhere/stream.csv:0: cannot open: No such file or directory", stream.error);
 }
 
-static void test_refuses_empty_files(void)
+TEST(test_refuses_empty_files)
 {
     refused("", 1, "the file is empty");
     refused("# only a comment\n\n", 2, "no header");
     refused("t_us,x,y,z\n# nothing\n", 2, "no rows after the header");
 }
 
-static void test_refuses_a_missing_column(void)
+TEST(test_refuses_a_missing_column)
 {
     refused("t_us,x,z\n0,1,2\n", 1, "missing column y (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first)");
     refused("0,1,2,3\n", 1, "missing column t_us (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first)");
     refused("t_us,x,y,z\n0,1,2,3\nt_us,x,y\n", 3, "missing column z");
 }
 
-static void test_refuses_a_wrong_field_count(void)
+TEST(test_refuses_a_wrong_field_count)
 {
     refused("t_us,x,y,z\n0,1,2,3\n10,1,2\n", 3, "3 fields where the header has 4");
     refused("t_us,x,y,z\n0,1,2,3,\n", 2, "5 fields where the header has 4");
 }
 
-static void test_refuses_what_is_no_whole_number(void)
+TEST(test_refuses_what_is_no_whole_number)
 {
     refused("t_us,x,y,z\n0,1,abc,3\n", 2, "y is not a whole number: 'abc'");
     refused("t_us,x,y,z\n0,1,,3\n", 2, "y is not a whole number: ''");
@@ -199,7 +199,7 @@ static void test_refuses_what_is_no_whole_number(void)
     refused("t_us,x,y,z\n0,99999999999999999999,2,3\n", 2, "x is not a whole number: '99999999999999999999'");
 }
 
-static void test_refuses_values_outside_the_sensor(void)
+TEST(test_refuses_values_outside_the_sensor)
 {
     refused("t_us,x,y,z\n0,4096,2,3\n", 2, "x is outside -4096..4095: 4096");
     refused("t_us,x,y,z\n0,1,2,-4097\n", 2, "z is outside -4096..4095: -4097");
@@ -208,21 +208,21 @@ static void test_refuses_values_outside_the_sensor(void)
             "roll_true_cdeg is outside -18000..18000: 18001");
 }
 
-static void test_refuses_time_going_backwards(void)
+TEST(test_refuses_time_going_backwards)
 {
     refused("t_us,x,y,z\n0,1,2,3\n20,1,2,3\n19,1,2,3\n", 4, "time goes backwards: 19 after 20");
     /* beyond 32 bits there is no counter that could have wrapped */
     refused("t_us,x,y,z\n9000000000,1,2,3\n0,1,2,3\n", 3, "time goes backwards: 0 after 9000000000");
 }
 
-static void test_refuses_binary(void)
+TEST(test_refuses_binary)
 {
     static const char bytes[] = "t_us,x,y,z\n0,1,2,3\n10,\0,2,3\n";
     TEST_ASSERT_FALSE(load_bytes(bytes, sizeof bytes - 1));
     TEST_ASSERT_NOT_NULL(strstr(stream.error, ":3: a NUL byte"));
 }
 
-static void test_recordings(void)
+TEST(test_recordings)
 {
     /* rows and duration as in the recordings' index.csv */
     static const char *const name = "../shared/streams/open/gest-100-2g-a.csv";
@@ -243,27 +243,6 @@ int main(void)
         return 1;
     }
     close(file);
-    UNITY_BEGIN();
-    RUN_TEST(test_plain_rows_and_rate);
-    RUN_TEST(test_rate_is_the_median_step);
-    RUN_TEST(test_one_row_has_no_rate);
-    RUN_TEST(test_columns_by_name_others_ignored);
-    RUN_TEST(test_truth_columns);
-    RUN_TEST(test_bom_crlf_comments_blank_lines_and_padding);
-    RUN_TEST(test_wrap_of_the_32_bit_clock);
-    RUN_TEST(test_step_back_of_exactly_2_31_is_an_error_one_more_is_a_wrap);
-    RUN_TEST(test_repeated_header_begins_a_segment_one_period_later);
-    RUN_TEST(test_a_second_segment_may_have_other_columns);
-    RUN_TEST(test_output_of_the_firmware_is_a_stream);
-    RUN_TEST(test_refuses_a_file_that_is_not_there);
-    RUN_TEST(test_refuses_empty_files);
-    RUN_TEST(test_refuses_a_missing_column);
-    RUN_TEST(test_refuses_a_wrong_field_count);
-    RUN_TEST(test_refuses_what_is_no_whole_number);
-    RUN_TEST(test_refuses_values_outside_the_sensor);
-    RUN_TEST(test_refuses_time_going_backwards);
-    RUN_TEST(test_refuses_binary);
-    RUN_TEST(test_recordings);
     unlink(path);
-    return UNITY_END();
+    return test_all();
 }

@@ -4,7 +4,7 @@
  * standard deviations of the estimate; single samples 6 sigma of the noise (1.2e-4 false alarms in 60,000 readings).
  */
 #include "stream.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,8 +20,6 @@
 static const double lsb_per_g[3] = { 265.0, 265.0, 256.0 };
 
 static stream_t stream;
-
-void setUp(void) {}
 
 void tearDown(void)
 {
@@ -102,7 +100,7 @@ static void assert_truth_still(double from_s, double to_s)
     }
 }
 
-static void test_every_stream_is_there_with_its_length_rate_and_size(void)
+TEST(test_every_stream_is_there_with_its_length_rate_and_size)
 {
     static const struct {
         const char *name;
@@ -131,7 +129,7 @@ static void test_every_stream_is_there_with_its_length_rate_and_size(void)
 }
 
 /* The standard deviation of an rms over n samples is rms / sqrt(2 n); rounding adds its variance of 1/12. */
-static void test_rest_noise_is_as_named_on_each_axis(void)
+TEST(test_rest_noise_is_as_named_on_each_axis)
 {
     static const struct {
         const char *name;
@@ -150,7 +148,7 @@ static void test_rest_noise_is_as_named_on_each_axis(void)
     }
 }
 
-static void test_clean_streams_agree_with_their_truth(void)
+TEST(test_clean_streams_agree_with_their_truth)
 {
     static const struct {
         const char *name;
@@ -174,7 +172,7 @@ static void test_clean_streams_agree_with_their_truth(void)
 }
 
 /* Slow: 30 degrees * 2 pi * 0.05 Hz. Fast: 15/8 * 90 degrees / 2.2 s. 0.01 degree steps: 1 degree/s, 4 at 400 Hz. */
-static void test_motion_is_as_fast_as_described(void)
+TEST(test_motion_is_as_fast_as_described)
 {
     load("tilt-slow");
     TEST_ASSERT_DOUBLE_WITHIN(1.0, 9.42, peak_rate_deg_s(0));
@@ -188,7 +186,7 @@ static void test_motion_is_as_fast_as_described(void)
     assert_truth_still(7.51, 10.0);
 }
 
-static void test_pitch_passes_90_and_roll_flips_only_there(void)
+TEST(test_pitch_passes_90_and_roll_flips_only_there)
 {
     load("through-pitch-90");
     int16_t top = 0;
@@ -207,7 +205,7 @@ static void test_pitch_passes_90_and_roll_flips_only_there(void)
     TEST_ASSERT_EQUAL_UINT(2, flips);
 }
 
-static void test_roll_crosses_the_seam_and_rests_on_it(void)
+TEST(test_roll_crosses_the_seam_and_rests_on_it)
 {
     load("through-roll-180");
     unsigned resting = 0;
@@ -223,7 +221,7 @@ static void test_roll_crosses_the_seam_and_rests_on_it(void)
 }
 
 /* P(|n| > 16 LSB) = 0.15 P(|N| > 0.2) + 0.85 P(|N| > 4) = 0.15 * 0.84148 + 0.85 * 6.33e-5; N standard normal. */
-static void test_outliers_are_15_percent_of_20_times(void)
+TEST(test_outliers_are_15_percent_of_20_times)
 {
     load("outliers-15pct");
     unsigned large = 0;
@@ -244,7 +242,7 @@ static void test_outliers_are_15_percent_of_20_times(void)
 }
 
 /* P(|n| > 4 sigma), sigma that of the axis; rounding changes p by less than 0.003, the slope at 0.2 of 20 sigma. */
-static void test_steps_with_outliers_have_15_percent_of_20_times(void)
+TEST(test_steps_with_outliers_have_15_percent_of_20_times)
 {
     load("steps-outliers");
     unsigned large = 0;
@@ -259,7 +257,7 @@ static void test_steps_with_outliers_have_15_percent_of_20_times(void)
 }
 
 /* The truth of both step streams: 3 s pieces, every second one off by its size, roll first; nothing in between. */
-static void test_steps_are_of_the_named_sizes_at_the_named_times(void)
+TEST(test_steps_are_of_the_named_sizes_at_the_named_times)
 {
     static const char *const names[] = { "steps", "steps-outliers" };
     static const int16_t sizes_cdeg[] = { 50, 200, 1000, 4500 };
@@ -292,7 +290,7 @@ static bool has_doubled_axis(const stream_row_t *row)
 }
 
 /* Bad with 0.01 unless the one before was: 0.01 / 1.01 of 6000 = 59.4, a third of each kind; 4 sqrt(19.8) = 17.8. */
-static void test_bad_reads_are_single_and_of_the_three_kinds(void)
+TEST(test_bad_reads_are_single_and_of_the_three_kinds)
 {
     load("bad-reads");
     unsigned zeros = 0;
@@ -312,7 +310,7 @@ static void test_bad_reads_are_single_and_of_the_three_kinds(void)
 }
 
 /* A burst is over within 150 ms: at most 15 samples at 100 Hz; gaps of at least 0.3 s; 500 LSB and 6 sigma at most. */
-static void test_vibration_comes_in_bursts(void)
+TEST(test_vibration_comes_in_bursts)
 {
     load("vibration");
     size_t first = 0;
@@ -335,7 +333,7 @@ static void test_vibration_comes_in_bursts(void)
     TEST_ASSERT_UINT_WITHIN(15, 55, bursts);
 }
 
-static void test_clipping_meets_both_rails(void)
+TEST(test_clipping_meets_both_rails)
 {
     load("clipping");
     unsigned low = 0;
@@ -351,7 +349,7 @@ static void test_clipping_meets_both_rails(void)
     TEST_ASSERT_GREATER_OR_EQUAL_UINT(10, high);
 }
 
-static void test_free_fall_has_no_force_and_keeps_the_truth(void)
+TEST(test_free_fall_has_no_force_and_keeps_the_truth)
 {
     load("free-fall");
     assert_truth_still(0.0, 26.0);
@@ -369,7 +367,7 @@ static void test_free_fall_has_no_force_and_keeps_the_truth(void)
 }
 
 /* 0.5 g is 128 LSB; the mean of 280 samples of 2 LSB has a standard deviation of 0.12. */
-static void test_sideways_force_is_half_a_g_on_y_for_3_s(void)
+TEST(test_sideways_force_is_half_a_g_on_y_for_3_s)
 {
     load("sideways-0.5g");
     assert_truth_still(0.0, 20.0);
@@ -385,7 +383,7 @@ static void test_sideways_force_is_half_a_g_on_y_for_3_s(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.5, 0.5 * lsb_per_g[1], sum / n);
 }
 
-static void test_gaps_and_jitter_are_within_their_limits(void)
+TEST(test_gaps_and_jitter_are_within_their_limits)
 {
     load("gaps-jitter");
     unsigned gaps = 0;
@@ -407,7 +405,7 @@ static void test_gaps_and_jitter_are_within_their_limits(void)
 }
 
 /* Every file equals what the generator makes; the twin: one byte more in one file is noticed. */
-static void test_files_are_as_generated_and_a_changed_one_is_noticed(void)
+TEST(test_files_are_as_generated_and_a_changed_one_is_noticed)
 {
     TEST_ASSERT_EQUAL_INT(0, system(GENERATOR " --check > build/streams_check.log 2>&1"));
     TEST_ASSERT_EQUAL_INT(0, system(GENERATOR " --dir build/streams_twin > build/streams_check.log 2>&1"));
@@ -417,26 +415,4 @@ static void test_files_are_as_generated_and_a_changed_one_is_noticed(void)
     fputc('\n', file);
     fclose(file);
     TEST_ASSERT_NOT_EQUAL_INT(0, system(GENERATOR " --check --dir build/streams_twin > build/streams_check.log 2>&1"));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_every_stream_is_there_with_its_length_rate_and_size);
-    RUN_TEST(test_rest_noise_is_as_named_on_each_axis);
-    RUN_TEST(test_clean_streams_agree_with_their_truth);
-    RUN_TEST(test_motion_is_as_fast_as_described);
-    RUN_TEST(test_pitch_passes_90_and_roll_flips_only_there);
-    RUN_TEST(test_roll_crosses_the_seam_and_rests_on_it);
-    RUN_TEST(test_outliers_are_15_percent_of_20_times);
-    RUN_TEST(test_steps_with_outliers_have_15_percent_of_20_times);
-    RUN_TEST(test_steps_are_of_the_named_sizes_at_the_named_times);
-    RUN_TEST(test_bad_reads_are_single_and_of_the_three_kinds);
-    RUN_TEST(test_vibration_comes_in_bursts);
-    RUN_TEST(test_clipping_meets_both_rails);
-    RUN_TEST(test_free_fall_has_no_force_and_keeps_the_truth);
-    RUN_TEST(test_sideways_force_is_half_a_g_on_y_for_3_s);
-    RUN_TEST(test_gaps_and_jitter_are_within_their_limits);
-    RUN_TEST(test_files_are_as_generated_and_a_changed_one_is_noticed);
-    return UNITY_END();
 }

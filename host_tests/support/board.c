@@ -15,7 +15,7 @@ board_t board;
 
 static char line[512];
 static size_t line_length;
-static stream_t resting;
+static stream_t playing;
 
 static void take_line(void)
 {
@@ -64,7 +64,13 @@ static void begin(hal_host_config_t config, const stream_t *stream)
     board.note_count = 0;
     board.latched_count = 0;
     line_length = 0;
-    hal_host_begin(&config, stream, true);
+    if (stream != NULL) {
+        if (stream->rows != playing.rows) {
+            stream_free(&playing);
+        }
+        playing = *stream;
+    }
+    hal_host_begin(&config, stream != NULL ? &playing : NULL, true);
     app_start();
 }
 
@@ -80,9 +86,7 @@ void board_start_with_rx(const stream_t *stream, uint8_t (*on_rx)(uint8_t reg, u
 
 void board_start_resting(void)
 {
-    if (resting.rows == NULL) {
-        resting = board_noisy_stream(1000, 100.0, 1.5, 7u);
-    }
+    stream_t resting = board_noisy_stream(1000, 100.0, 1.5, 7u);
     board_start(&resting, 0.0, 0);
 }
 

@@ -31,7 +31,10 @@ typedef struct {
 
 extern board_t board;
 
-/* Power on with a stream (NULL: a sensor that never has data), clock error and start time, and start the firmware. */
+/*
+ * Power on with a stream (NULL: a sensor that never has data), clock error and start time, and start the firmware. The
+ * stream's rows are the board's from here on: they are freed when another stream starts.
+ */
 void board_start(const stream_t *stream, double ppm, uint32_t time_start_us);
 
 /* The same, where on_rx says what arrives of each byte of a register. */
@@ -55,7 +58,7 @@ size_t board_notes_with(const char *text, size_t from);
 /* Last note, "" when there is none. */
 const char *board_last_note(void);
 
-/* A stream in memory: n rows at rate_hz, all (x, y, z); free with stream_free. */
+/* A stream in memory: n rows at rate_hz, all (x, y, z). */
 stream_t board_constant_stream(size_t n, double rate_hz, int16_t x, int16_t y, int16_t z);
 
 /* As above with Gaussian-like noise of about sigma LSB and a counter in no axis; seed fixed by the caller. */

@@ -30,7 +30,7 @@ static void on_latched(uint64_t t_us, size_t row, const int16_t lsb[3])
 
 void rig_begin(double rate_hz, hal_host_config_t config)
 {
-    rig_end();
+    stream_free(&rig.stream);
     rig = (rig_t){ .limit_us = STAMP_LIMIT_US, .pass = rig_pass };
     rig.stream = board_constant_stream(ROWS, rate_hz, 0, -100, 250);
     for (size_t i = 0; i < rig.stream.count; i++) {
@@ -48,11 +48,6 @@ void rig_reset(void)
     hal_time_init();
     hal_drdy_enable();
     adxl345_init();
-}
-
-void rig_end(void)
-{
-    stream_free(&rig.stream);
 }
 
 /* Which latched sample this is, of those after the last that was taken. */

@@ -32,9 +32,6 @@ void rig_begin(double rate_hz, hal_host_config_t config);
 /* What the firmware begins after any reset: line, clock, INT1, driver. */
 void rig_reset(void);
 
-/* For tearDown. */
-void rig_end(void);
-
 /*
  * Takes what the driver has. Each is one that the sensor held, later than the one before it, with its own time (within
  * limit_us), or the test fails.

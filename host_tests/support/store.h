@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "settings/store.h"
+#include "support/test.h"
 
 /* Places behind the image, as store.h orders its tail. */
 enum { STORE_AT_VERSION = STORE_IMAGE_SIZE, STORE_AT_SEQUENCE, STORE_AT_CHECK, STORE_AT_MARK = STORE_RECORD_SIZE - 1 };
@@ -22,6 +23,13 @@ store_status_t store_boot(void);
 /* Sets: any number names one, no two agree in a byte that differs by the number's low bits. */
 void store_fill(uint32_t set);
 bool store_holds(uint32_t set);
+
+/* A boot that ends in this status, and with this set where one is good. */
+static inline void store_boots_to(store_status_t expected, uint32_t set)
+{
+    TEST_ASSERT_EQUAL(expected, store_boot());
+    TEST_ASSERT_TRUE(expected < STORE_GOOD || store_holds(set));
+}
 
 /* Fills, begins, and passes until it is over or the supply goes. The second without the first two. */
 void store_save(uint32_t set);

@@ -64,9 +64,9 @@ void talk_power_cycle(bool strap)
     board_run_ms(1000);
 }
 
-void talk_start_noisy(stream_t *stream, double rate_hz, double ppm)
+void talk_start_noisy(double rate_hz, double ppm)
 {
-    *stream = board_noisy_stream((size_t)(60.0 * rate_hz), rate_hz, 1.5, 11u);
-    board_start(stream, ppm, 0);
+    stream_t stream = board_noisy_stream((size_t)(60.0 * rate_hz), rate_hz, 1.5, 11u);
+    board_start(&stream, ppm, 0);
     board_run_ms(700);
 }

@@ -28,7 +28,7 @@ void talk_start(void);
 /* Power comes back over the same EEPROM, D4 at GND with `strap`. */
 void talk_power_cycle(bool strap);
 
-/* Power on at rest with noise of 1.5 LSB for a minute, at this rate and with the clock so far off; free the stream. */
-void talk_start_noisy(stream_t *stream, double rate_hz, double ppm);
+/* Power on at rest with noise of 1.5 LSB for a minute, at this rate and with the clock so far off. */
+void talk_start_noisy(double rate_hz, double ppm);
 
 #endif

@@ -4,7 +4,7 @@
  */
 #include "calibration.h"
 #include "support/filters.h"
-#include "unity.h"
+#include "support/test.h"
 #include <stdlib.h>
 
 static calibration_t c;
@@ -15,14 +15,12 @@ void setUp(void)
     calibration_plain(&c, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6);
 }
 
-void tearDown(void) {}
-
 static void prepare(void)
 {
     TEST_ASSERT_EQUAL_UINT8(CALIBRATION_GOOD, calibration_prepare(&applied, &c).why);
 }
 
-static void test_256_lsb_per_g_changes_no_bit(void)
+TEST(test_256_lsb_per_g_changes_no_bit)
 {
     prepare();
     uint32_t random = 91;
@@ -42,7 +40,7 @@ static void test_256_lsb_per_g_changes_no_bit(void)
 }
 
 /* 24 turns of the board and their 24 mirror images: exact, and each axis is where its name says. */
-static void test_every_naming_of_the_axes(void)
+TEST(test_every_naming_of_the_axes)
 {
     for (uint8_t code = 0; code < 27; code++) {
         const uint8_t digits[3] = { code % 3U, code / 3U % 3U, code / 9U };
@@ -67,7 +65,7 @@ static void test_every_naming_of_the_axes(void)
 }
 
 /* (64 - 10) LSB x 256/200 = 69.12 LSB, -(-16 - 10) ... : Q8 17694.72, with half a unit and the cut of 6/64. */
-static void test_offset_and_scale_belong_to_the_sensors_axis(void)
+TEST(test_offset_and_scale_belong_to_the_sensors_axis)
 {
     c.offset_lsb_q4[0] = 160;
     c.scale_lsb_per_g_uq6[0] = CALIBRATION_SCALE_UQ6(200U);
@@ -83,7 +81,7 @@ static void test_offset_and_scale_belong_to_the_sensors_axis(void)
 }
 
 /* Level upside down is diag(1, -1, -1) exactly; on its side, y up: our z is the sensor's y, our y its -z. */
-static void test_mountings_that_are_exact(void)
+TEST(test_mountings_that_are_exact)
 {
     static const int16_t levels[5][3] = {
         { 0, 0, 16384 }, { 0, 0, -16384 }, { 0, 16384, 0 }, { 0, -16384, 0 }, { 16384, 0, 0 }
@@ -105,7 +103,7 @@ static void test_mountings_that_are_exact(void)
     }
 }
 
-static void test_any_reading_is_safe(void)
+TEST(test_any_reading_is_safe)
 {
     static const int32_t ends[] = { INT32_MIN, -8388608, -1179648, 0, 1179648, 8388607, INT32_MAX };
     c.level_q14[0] = 9459; /* 1 / sqrt(3) */
@@ -128,7 +126,7 @@ static void test_any_reading_is_safe(void)
     TEST_ASSERT_INT32_WITHIN(1100, 2660752, out[2]); /* elements to 2^-15 of 0.74: 4.1e-5, and the length to 7e-5 */
 }
 
-static void test_what_is_not_legal_is_refused_and_nothing_written(void)
+TEST(test_what_is_not_legal_is_refused_and_nothing_written)
 {
     prepare();
     const calibration_applied_t before = applied;
@@ -158,7 +156,7 @@ static void test_what_is_not_legal_is_refused_and_nothing_written(void)
 }
 
 /* Sums beyond 16 bits, which is what an int has on the chip. */
-static void test_numbers_at_the_ends_of_16_bits_are_refused(void)
+TEST(test_numbers_at_the_ends_of_16_bits_are_refused)
 {
     static const int16_t ends[] = { INT16_MIN, -31489, 31488, INT16_MAX };
     for (uint8_t i = 0; i < 4; i++) {
@@ -178,7 +176,7 @@ static void test_numbers_at_the_ends_of_16_bits_are_refused(void)
 }
 
 /* 0.85 g = 13926.4, 1.15 g = 18841.6 of Q14. */
-static void test_level_is_gravity(void)
+TEST(test_level_is_gravity)
 {
     static const int16_t lengths[] = { 13926, 13927, 18841, 18842, 0, -13926, -13927, -18841, -18842, INT16_MIN };
     static const bool good[] = { false, true, true, false, false, false, true, true, false, false };
@@ -193,7 +191,7 @@ static void test_level_is_gravity(void)
 }
 
 /* The middle of a scale of 256 LSB/g and an offset of (16, -8, 4) LSB, y down. */
-static void test_single_takes_the_offsets_from_the_nearest_position(void)
+TEST(test_single_takes_the_offsets_from_the_nearest_position)
 {
     for (uint8_t position = 0; position < 6; position++) {
         int16_t mean[3] = { 256, -128, 64 };
@@ -207,7 +205,7 @@ static void test_single_takes_the_offsets_from_the_nearest_position(void)
     }
 }
 
-static void test_single_refuses_what_is_no_offset_and_keeps_the_old(void)
+TEST(test_single_refuses_what_is_no_offset_and_keeps_the_old)
 {
     static const int16_t means[6][3] = { { 0, 0, 4096 + 1281 }, { 0, 0, -4096 - 1281 }, { 1281, 0, 4096 },
                                          { 0, -1281, -4096 },   { 0, 0, 32767 },        { -32768, 32767, 0 } };
@@ -222,7 +220,7 @@ static void test_single_refuses_what_is_no_offset_and_keeps_the_old(void)
 }
 
 /* The reading of 265 LSB/g and an offset of 10 LSB on x, axes turned: level is what was read, in the new axes. */
-static void test_tare_takes_the_calibrated_vector_in_the_axes_in_force(void)
+TEST(test_tare_takes_the_calibrated_vector_in_the_axes_in_force)
 {
     calibration_plain(&c, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
     c.offset_lsb_q4[0] = 160;
@@ -236,7 +234,7 @@ static void test_tare_takes_the_calibrated_vector_in_the_axes_in_force(void)
     TEST_ASSERT_EQUAL_INT16(13107, c.level_q14[2]); /* 13107.2 */
 }
 
-static void test_tare_refuses_what_is_no_gravity_and_keeps_the_old(void)
+TEST(test_tare_refuses_what_is_no_gravity_and_keeps_the_old)
 {
     static const int16_t means[6][3] = { { 0, 0, 0 },          { 0, 0, 3481 },          { 0, 0, 4711 },
                                          { 3000, 3000, 3000 }, { 32767, 32767, 32767 }, { 0, -32768, 0 } };
@@ -245,22 +243,4 @@ static void test_tare_refuses_what_is_no_gravity_and_keeps_the_old(void)
         TEST_ASSERT_EQUAL_UINT8(CALIBRATION_NO_GRAVITY, calibration_tare(&c, means[i]).why);
         TEST_ASSERT_EQUAL_MEMORY(&before, &c, sizeof before);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_256_lsb_per_g_changes_no_bit);
-    RUN_TEST(test_every_naming_of_the_axes);
-    RUN_TEST(test_offset_and_scale_belong_to_the_sensors_axis);
-    RUN_TEST(test_mountings_that_are_exact);
-    RUN_TEST(test_any_reading_is_safe);
-    RUN_TEST(test_what_is_not_legal_is_refused_and_nothing_written);
-    RUN_TEST(test_numbers_at_the_ends_of_16_bits_are_refused);
-    RUN_TEST(test_level_is_gravity);
-    RUN_TEST(test_single_takes_the_offsets_from_the_nearest_position);
-    RUN_TEST(test_single_refuses_what_is_no_offset_and_keeps_the_old);
-    RUN_TEST(test_tare_takes_the_calibrated_vector_in_the_axes_in_force);
-    RUN_TEST(test_tare_refuses_what_is_no_gravity_and_keeps_the_old);
-    return UNITY_END();
 }

@@ -9,7 +9,7 @@
 #include "calibration.h"
 #include "calibration_inside.h"
 #include "support/random.h"
-#include "unity.h"
+#include "support/test.h"
 
 static calibration_t c;
 
@@ -17,8 +17,6 @@ void setUp(void)
 {
     calibration_plain(&c, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6);
 }
-
-void tearDown(void) {}
 
 /* |a| 2^16 / b + 1/2, cut, with the sign of a. */
 static int64_t rounded_quotient(int64_t a, int64_t b)
@@ -33,7 +31,7 @@ static void check_quotient(int32_t a, uint16_t b)
 }
 
 /* Half away from zero, for any numbers that fit, and at their ends. */
-static void test_the_division_is_rounded_half_away_from_zero(void)
+TEST(test_the_division_is_rounded_half_away_from_zero)
 {
     test_random_t random;
     random_seed(&random, 86);
@@ -60,7 +58,7 @@ static void test_the_division_is_rounded_half_away_from_zero(void)
  * too small on average; 20,000 that are rounded scatter by 1 / sqrt(12 x 20,000) = 0.002 units, and by as much again
  * with the errors of their factors: five times that is the limit.
  */
-static void test_products_of_the_mounting_are_rounded_not_cut(void)
+TEST(test_products_of_the_mounting_are_rounded_not_cut)
 {
     test_random_t random;
     random_seed(&random, 87);
@@ -90,7 +88,7 @@ static void test_products_of_the_mounting_are_rounded_not_cut(void)
  * Without a mounting an element is 256 / scale: rounded to 2^-16, then half up to 2^-14, 1/8 and 1/2 unit of Q14. The
  * bias of an offset of 16 LSB is that of the element, and half a unit of Q8.
  */
-static void test_elements_are_rounded_to_five_eighths_of_a_unit(void)
+TEST(test_elements_are_rounded_to_five_eighths_of_a_unit)
 {
     for (uint16_t scale_uq6 = CALIBRATION_SCALE_MIN_UQ6; scale_uq6 <= CALIBRATION_SCALE_MAX_UQ6; scale_uq6++) {
         calibration_applied_t applied;
@@ -109,7 +107,7 @@ static void test_elements_are_rounded_to_five_eighths_of_a_unit(void)
 }
 
 /* Reading less offset over scale, in Q14, to 2 g either way; LSB in Q4. */
-static void test_a_reading_in_g(void)
+TEST(test_a_reading_in_g)
 {
     test_random_t random;
     random_seed(&random, 88);
@@ -125,7 +123,7 @@ static void test_a_reading_in_g(void)
 }
 
 /* Offsets of one rest, by scales that are not whole in Q4: 1 g is the scale rounded half up to 1/16 LSB. */
-static void test_one_g_of_a_single_rest_is_rounded(void)
+TEST(test_one_g_of_a_single_rest_is_rounded)
 {
     for (uint16_t scale_uq6 = CALIBRATION_SCALE_MIN_UQ6; scale_uq6 <= CALIBRATION_SCALE_MAX_UQ6; scale_uq6++) {
         for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
@@ -145,7 +143,7 @@ static void test_one_g_of_a_single_rest_is_rounded(void)
 static const int16_t exact_means[18] = { 4096, 0, 0, -4096, 0, 0, 0, 4096, 0, 0, -4096, 0, 0, 0, 4096, 0, 0, -4096 };
 
 /* One position of an exact part turned towards the next axis: 30 degrees are too much, whatever the others say. */
-static void test_a_position_of_six_may_be_up_to_30_degrees_off(void)
+TEST(test_a_position_of_six_may_be_up_to_30_degrees_off)
 {
     for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
         for (int half_degrees = 56; half_degrees <= 64; half_degrees++) {
@@ -165,7 +163,7 @@ static void test_a_position_of_six_may_be_up_to_30_degrees_off(void)
 }
 
 /* One with 1 g for each component, then six with what the round before has found (docs/protocol.md). */
-static void test_six_positions_take_six_rounds_after_the_first(void)
+TEST(test_six_positions_take_six_rounds_after_the_first)
 {
     enum { ROUNDS = 1 + 6 };
     calibration_six_t six;
@@ -179,7 +177,7 @@ static void test_six_positions_take_six_rounds_after_the_first(void)
 }
 
 /* What the last round changed, in Q14, is the residual in mg, rounded; above 160 they do not fit (calibration.h). */
-static void test_the_residual_is_what_the_last_round_changed(void)
+TEST(test_the_residual_is_what_the_last_round_changed)
 {
     for (uint16_t off_q14 = 0; off_q14 < 400; off_q14++) {
         calibration_six_t six;
@@ -193,18 +191,4 @@ static void test_the_residual_is_what_the_last_round_changed(void)
         TEST_ASSERT_EQUAL_UINT8(off_q14 <= 160 ? 0 : 3, verdict.where);
         TEST_ASSERT_EQUAL_UINT16((uint16_t)floor(off_q14 * 1000.0 / 16384.0 + 0.5), residual_mg);
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_the_division_is_rounded_half_away_from_zero);
-    RUN_TEST(test_products_of_the_mounting_are_rounded_not_cut);
-    RUN_TEST(test_elements_are_rounded_to_five_eighths_of_a_unit);
-    RUN_TEST(test_a_reading_in_g);
-    RUN_TEST(test_one_g_of_a_single_rest_is_rounded);
-    RUN_TEST(test_a_position_of_six_may_be_up_to_30_degrees_off);
-    RUN_TEST(test_six_positions_take_six_rounds_after_the_first);
-    RUN_TEST(test_the_residual_is_what_the_last_round_changed);
-    return UNITY_END();
 }

@@ -10,7 +10,7 @@
 #include "reference/calibration.h"
 #include "rest.h"
 #include "support/random.h"
-#include "unity.h"
+#include "support/test.h"
 
 #define DEG 57.29577951308232
 
@@ -27,8 +27,6 @@ void setUp(void)
     random_seed(&noise_source, 85);
     calibration_plain(&c, CALIBRATION_SCALE_3V3_XY_UQ6, CALIBRATION_SCALE_3V3_Z_UQ6);
 }
-
-void tearDown(void) {}
 
 static double length(const double v[3])
 {
@@ -151,7 +149,7 @@ static double worst_attitude(const part_t *part, const calibration_t *calibratio
  * gain about that in LSB at 1 g; some 0.2 LSB across 256: 0.04 degree rms. Uncalibrated, an offset of 40 LSB on two
  * axes alone makes 12 degrees.
  */
-static void test_six_positions_reach_0_3_degree(void)
+TEST(test_six_positions_reach_0_3_degree)
 {
     calibration_t none;
     calibration_plain(&none, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6);
@@ -184,7 +182,7 @@ static void test_six_positions_reach_0_3_degree(void)
  * offsets, 1/32 of 200 LSB = 1.6e-4. Together 1.6e-4, 1.3 times that after all rounds: 2.1e-4 of 330 LSB are 0.069 LSB.
  * Scales are kept in 1/64 (0.008), offsets in 1/16 (0.031), and the rounds leave 0.005.
  */
-static void test_six_positions_against_a_solver(void)
+TEST(test_six_positions_against_a_solver)
 {
     double worst_offset = 0.0;
     double worst_scale = 0.0;
@@ -221,7 +219,7 @@ static void expect_refusal(const int16_t means[18], calibration_why_t why, uint8
 }
 
 /* 256 LSB/g, no offset, every position exact: each fault alone. */
-static void test_six_positions_refused_with_the_reason(void)
+TEST(test_six_positions_refused_with_the_reason)
 {
     static const int16_t exact[18] = { 4096, 0, 0, -4096, 0, 0, 0, 4096, 0, 0, -4096, 0, 0, 0, 4096, 0, 0, -4096 };
     for (uint8_t axis = 0; axis < 3; axis++) {
@@ -252,7 +250,7 @@ static void test_six_positions_refused_with_the_reason(void)
 }
 
 /* One position 15 degrees off changes by 1 - cos(15 degrees) = 34 mg in the first round: ended there, it is refused. */
-static void test_six_positions_that_have_not_settled_are_refused(void)
+TEST(test_six_positions_that_have_not_settled_are_refused)
 {
     static const int16_t tilted[18] = { 4096, 0, 0, -4096, 0, 0, 0, 4096, 0, 0, -3956, 1060, 0, 0, 4096, 0, 0, -4096 };
     calibration_plain(&c, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6);
@@ -273,7 +271,7 @@ static void test_six_positions_that_have_not_settled_are_refused(void)
 }
 
 /* Whatever is read: a verdict, legal numbers if it is good, the old ones if not. */
-static void test_six_positions_of_anything(void)
+TEST(test_six_positions_of_anything)
 {
     int good = 0;
     for (int run = 0; run < 200000; run++) {
@@ -298,7 +296,7 @@ static void test_six_positions_of_anything(void)
 }
 
 /* A calibrated part, mounted anyhow, tared with the noise of a desk: level reads as level but for that noise. */
-static void test_tare_of_any_mounting(void)
+TEST(test_tare_of_any_mounting)
 {
     double worst = 0.0;
     for (int run = 0; run < 2000; run++) {
@@ -330,16 +328,4 @@ static void test_tare_of_any_mounting(void)
     /* 4.5 deviations of 0.13 LSB on z, 0.10 on x and y: 0.13 degree; 0.022 + 0.008 of arithmetic, 1/32 LSB: 0.007 */
     printf("tare of 2000 mountings: level off by %.3f degree at most\n", worst);
     TEST_ASSERT_TRUE(worst <= 0.17);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_six_positions_reach_0_3_degree);
-    RUN_TEST(test_six_positions_against_a_solver);
-    RUN_TEST(test_six_positions_refused_with_the_reason);
-    RUN_TEST(test_six_positions_that_have_not_settled_are_refused);
-    RUN_TEST(test_six_positions_of_anything);
-    RUN_TEST(test_tare_of_any_mounting);
-    return UNITY_END();
 }

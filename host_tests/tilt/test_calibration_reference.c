@@ -17,7 +17,7 @@
 #include "calibration.h"
 #include "reference/calibration.h"
 #include "support/random.h"
-#include "unity.h"
+#include "support/test.h"
 
 #define ORTHOGONALITY_BOUND 5.2e-4
 #define ORTHOGONALITY_GOAL 1e-3
@@ -34,8 +34,6 @@ void setUp(void)
 {
     calibration_plain(&c, CALIBRATION_SCALE_2V5_UQ6, CALIBRATION_SCALE_2V5_UQ6);
 }
-
-void tearDown(void) {}
 
 static double length(const double v[3])
 {
@@ -71,7 +69,7 @@ static void mounting_of(const int16_t level_q14[3], double m[9])
 }
 
 /* Every 0.5 degree of the sphere, at 0.86, 1 and 1.14 g. */
-static void test_mounting_on_a_fine_sphere(void)
+TEST(test_mounting_on_a_fine_sphere)
 {
     double worst_product = 0.0;
     double worst_level = 0.0;
@@ -107,7 +105,7 @@ static void test_mounting_on_a_fine_sphere(void)
 }
 
 /* tau takes its vector to the first axis; with the axes (z, x, y) for (1, 2, 3) it is the smallest turn to z. */
-static void test_tau_of_paper_003_is_the_smallest_turn(void)
+TEST(test_tau_of_paper_003_is_the_smallest_turn)
 {
     test_random_t random;
     random_seed(&random, 81);
@@ -131,7 +129,7 @@ static void test_tau_of_paper_003_is_the_smallest_turn(void)
 }
 
 /* The field of the paper: notes on paper 003, tau of H = (17818, 1951, 41847) nT to nine digits. */
-static void test_tau_has_the_papers_numbers(void)
+TEST(test_tau_has_the_papers_numbers)
 {
     static const double field[3] = { 17818, 1951, 41847 };
     static const double printed[9] = { .391395644,  .042856263,  .919224015,  -.042856263, .998679988,
@@ -144,7 +142,7 @@ static void test_tau_has_the_papers_numbers(void)
 }
 
 /* A mounting that is turned about x keeps the x axis: row 1 is (1, 0, 0) whichever way up. */
-static void test_mounting_about_x_keeps_the_heading_of_x(void)
+TEST(test_mounting_about_x_keeps_the_heading_of_x)
 {
     for (int tenth = 0; tenth < 3600; tenth++) {
         double t = tenth / 10.0 / DEG;
@@ -200,7 +198,7 @@ static double worst_use(bool mounted, uint64_t seed)
     return worst;
 }
 
-static void test_direction_after_use(void)
+TEST(test_direction_after_use)
 {
     double plain = worst_use(false, 82);
     double mounted = worst_use(true, 83);
@@ -211,7 +209,7 @@ static void test_direction_after_use(void)
 }
 
 /* All of it against matrices of double: 0.01 LSB of readings to 1 g, all namings of the axes. */
-static void test_the_whole_formula(void)
+TEST(test_the_whole_formula)
 {
     test_random_t random;
     random_seed(&random, 84);
@@ -242,16 +240,4 @@ static void test_the_whole_formula(void)
             TEST_ASSERT_DOUBLE_WITHIN(65536.0 * 1.7321 * (ELEMENT_BOUND + 3.94e-5) + 0.6, 256.0 * exact[i], out_q8[i]);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_mounting_on_a_fine_sphere);
-    RUN_TEST(test_tau_of_paper_003_is_the_smallest_turn);
-    RUN_TEST(test_tau_has_the_papers_numbers);
-    RUN_TEST(test_mounting_about_x_keeps_the_heading_of_x);
-    RUN_TEST(test_direction_after_use);
-    RUN_TEST(test_the_whole_formula);
-    return UNITY_END();
 }

@@ -5,7 +5,7 @@
 #include "rest.h"
 #include "support/documented_limits.h"
 #include "support/random.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,8 +19,6 @@ void setUp(void)
 {
     rest_start(&rest);
 }
-
-void tearDown(void) {}
 
 static bool add(int x, int y, int z)
 {
@@ -36,7 +34,7 @@ static int64_t half_up(int64_t a, int64_t b)
 }
 
 /* 256 readings, and each of them says whether it was the last. */
-static void test_it_is_full_with_256_readings(void)
+TEST(test_it_is_full_with_256_readings)
 {
     for (int k = 1; k <= N; k++) {
         TEST_ASSERT_EQUAL(k == N, add(3, -4, 256));
@@ -48,7 +46,7 @@ static void test_it_is_full_with_256_readings(void)
 }
 
 /* Any centre and any spread, against sums of 64 bits over the readings themselves. */
-static void test_mean_and_variance_against_exact_sums(void)
+TEST(test_mean_and_variance_against_exact_sums)
 {
     test_random_t random;
     random_seed(&random, 71);
@@ -73,7 +71,7 @@ static void test_mean_and_variance_against_exact_sums(void)
 }
 
 /* All but the first as far from it as may be, or the second half of them, on axes at the greatest first reading. */
-static void test_the_largest_sums_do_not_wrap(void)
+TEST(test_the_largest_sums_do_not_wrap)
 {
     for (int far = -128; far <= 127; far += 255) {
         rest_start(&rest);
@@ -93,7 +91,7 @@ static void test_the_largest_sums_do_not_wrap(void)
 }
 
 /* -128..127 LSB from the first. */
-static void test_a_difference_fits_eight_bits_or_it_has_moved(void)
+TEST(test_a_difference_fits_eight_bits_or_it_has_moved)
 {
     for (int axis = 0; axis < 3; axis++) {
         for (int off = -300; off <= 300; off++) {
@@ -109,7 +107,7 @@ static void test_a_difference_fits_eight_bits_or_it_has_moved(void)
 }
 
 /* Whatever comes as first and second reading; one that is far away is never forgotten. */
-static void test_any_reading_is_safe(void)
+TEST(test_any_reading_is_safe)
 {
     static const int ends[] = { -32768, -4096, -1901, -1900, 1900, 1901, 4095, 32767 };
     for (int i = 0; i < 8; i++) {
@@ -143,7 +141,7 @@ static bool still_with(int axis, int size, uint16_t rate_dhz)
  * Below 62.5 x 0.02 x rate: 125 LSB^2 at 100 Hz (11^2 = 121, 12^2 = 144), 1,000 at 800 Hz (31^2 = 961, 32^2 = 1024).
  * The limit itself is too much: 25 LSB^2 at 20 Hz, 100 LSB^2 at 80 Hz.
  */
-static void test_the_limits_of_the_variance(void)
+TEST(test_the_limits_of_the_variance)
 {
     static const uint16_t rates_dhz[] = { 200, 208, 800, HZ_100, HZ_800 };
     for (int i = 0; i < 3 * 5 * 40; i++) {
@@ -155,7 +153,7 @@ static void test_the_limits_of_the_variance(void)
 }
 
 /* A step in the middle by 2 LSB is the limit of the halves' means, and so is a rise by 4; the next readings beyond. */
-static void test_a_small_drift_shows(void)
+TEST(test_a_small_drift_shows)
 {
     for (int axis = 0; axis < 3; axis++) {
         for (int step = -3; step <= 3; step++) {
@@ -180,7 +178,7 @@ static void test_a_small_drift_shows(void)
 }
 
 /* Means of halves are 2 LSB apart when the sums of their 128 readings are 256 apart: one reading by 1 LSB decides. */
-static void test_the_limit_of_the_drift_to_one_lsb_of_one_reading(void)
+TEST(test_the_limit_of_the_drift_to_one_lsb_of_one_reading)
 {
     for (int sign = -1; sign <= 1; sign += 2) {
         for (int apart = 250; apart <= 270; apart++) {
@@ -224,26 +222,11 @@ static double still_share(uint16_t rate_dhz, double variance_lsb2, double rise_l
  * alone has V = 16, z 27: s = 0.5, 0.65, 0.99994^2 x 0.9979 = 0.998. Turning by 6 LSB makes 3 of the 2 LSB: on two
  * axes with s = 0.18 never still. V = 160: above the limit by 35, whose deviation is 160 sqrt(2 / 256) = 14; on z more.
  */
-static void test_desk_and_airframe_are_still_and_slow_turning_is_not(void)
+TEST(test_desk_and_airframe_are_still_and_slow_turning_is_not)
 {
     TEST_ASSERT_TRUE(still_share(HZ_100, 2.0, 0.0) == 1.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.004, 0.998, still_share(HZ_800, 16.0, 0.0));
     TEST_ASSERT_DOUBLE_WITHIN(0.018, 0.956, still_share(HZ_100, 33.0, 0.0));
     TEST_ASSERT_TRUE(still_share(HZ_100, 2.0, 6.0) <= 0.001);
     TEST_ASSERT_TRUE(still_share(HZ_100, 160.0, 0.0) <= 0.002);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_it_is_full_with_256_readings);
-    RUN_TEST(test_mean_and_variance_against_exact_sums);
-    RUN_TEST(test_the_largest_sums_do_not_wrap);
-    RUN_TEST(test_a_difference_fits_eight_bits_or_it_has_moved);
-    RUN_TEST(test_any_reading_is_safe);
-    RUN_TEST(test_the_limits_of_the_variance);
-    RUN_TEST(test_a_small_drift_shows);
-    RUN_TEST(test_the_limit_of_the_drift_to_one_lsb_of_one_reading);
-    RUN_TEST(test_desk_and_airframe_are_still_and_slow_turning_is_not);
-    return UNITY_END();
 }

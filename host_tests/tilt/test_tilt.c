@@ -3,12 +3,8 @@
  * double: test_tilt_reference.c.
  */
 #include "support/filters.h"
+#include "support/test.h"
 #include "tilt.h"
-#include "unity.h"
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* root = floor(sqrt(v)) without a product of 64 bits: v - root^2 <= 2 root. */
 static void check_root(uint32_t v)
@@ -17,7 +13,7 @@ static void check_root(uint32_t v)
     TEST_ASSERT_TRUE(root * root <= v && v - root * root <= 2U * root);
 }
 
-static void test_isqrt_is_exact_around_every_square(void)
+TEST(test_isqrt_is_exact_around_every_square)
 {
     for (uint32_t root = 0; root <= UINT16_MAX; root += ON_PC_OR_CHIP(1U, 31U)) {
         uint32_t square = root * root;
@@ -28,7 +24,7 @@ static void test_isqrt_is_exact_around_every_square(void)
     }
 }
 
-static void test_atan2_on_axes_and_diagonals_is_exact(void)
+TEST(test_atan2_on_axes_and_diagonals_is_exact)
 {
     for (int32_t r = 1; r < (1L << 30); r = r * 2 + 1) {
         TEST_ASSERT_EQUAL_INT16(0, tilt_atan2_cdeg(0, r));
@@ -44,14 +40,14 @@ static void test_atan2_on_axes_and_diagonals_is_exact(void)
 }
 
 /* -180 degrees would be a second name of 180: the branch cut belongs to the positive side. */
-static void test_atan2_just_below_the_cut_gives_180_not_minus_180(void)
+TEST(test_atan2_just_below_the_cut_gives_180_not_minus_180)
 {
     TEST_ASSERT_EQUAL_INT16(18000, tilt_atan2_cdeg(-1, -(1L << 30)));
     TEST_ASSERT_EQUAL_INT16(18000, tilt_atan2_cdeg(1, -(1L << 30)));
     TEST_ASSERT_EQUAL_INT16(-17999, tilt_atan2_cdeg(-175, -1000000)); /* -179.98997 */
 }
 
-static void test_atan2_accepts_every_int32(void)
+TEST(test_atan2_accepts_every_int32)
 {
     TEST_ASSERT_EQUAL_INT16(-13500, tilt_atan2_cdeg(INT32_MIN, INT32_MIN));
     TEST_ASSERT_EQUAL_INT16(4500, tilt_atan2_cdeg(INT32_MAX, INT32_MAX));
@@ -59,7 +55,7 @@ static void test_atan2_accepts_every_int32(void)
     TEST_ASSERT_EQUAL_INT16(18000, tilt_atan2_cdeg(0, INT32_MIN));
 }
 
-static void test_no_acceleration_is_defined(void)
+TEST(test_no_acceleration_is_defined)
 {
     tilt_t tilt = { .roll_cdeg = -4321, .pitch_cdeg = 99, .roll_undefined = false };
     tilt_angles(&tilt, (const int32_t[]){ 0, 0, 0 });
@@ -68,7 +64,7 @@ static void test_no_acceleration_is_defined(void)
     TEST_ASSERT_TRUE(tilt.roll_undefined);
 }
 
-static void test_roll_is_kept_at_the_singularity_and_found_again(void)
+TEST(test_roll_is_kept_at_the_singularity_and_found_again)
 {
     tilt_t tilt = { .roll_cdeg = 777 };
     tilt_angles(&tilt, (const int32_t[]){ -65536, 3 * 256, 2 * 256 }); /* |(y, z)| = 3.6 LSB: below 4 */
@@ -80,7 +76,7 @@ static void test_roll_is_kept_at_the_singularity_and_found_again(void)
     TEST_ASSERT_EQUAL_INT16(4500, tilt.roll_cdeg);
 }
 
-static void test_signs_follow_the_data_sheet_orientations(void)
+TEST(test_signs_follow_the_data_sheet_orientations)
 {
     tilt_t tilt = { 0 };
     tilt_angles(&tilt, (const int32_t[]){ 0, 0, 65536 });
@@ -95,7 +91,7 @@ static void test_signs_follow_the_data_sheet_orientations(void)
     TEST_ASSERT_TRUE(tilt.roll_undefined && tilt.pitch_cdeg == 9000);
 }
 
-static void test_mirrored_vectors_give_mirrored_angles(void)
+TEST(test_mirrored_vectors_give_mirrored_angles)
 {
     uint32_t random = 20250103U;
     for (uint32_t i = 0; i < ON_PC_OR_CHIP(200000U, 2000U); i++) {
@@ -115,7 +111,7 @@ static void test_mirrored_vectors_give_mirrored_angles(void)
 }
 
 /* 0.85 g = 55705.6 and 1.15 g = 75366.4 in Q8. Each axis is cut to 1/64 LSB: the verdict may differ by 4 of Q8. */
-static void test_gravity_limits_on_every_axis(void)
+TEST(test_gravity_limits_on_every_axis)
 {
     for (uint8_t axis = 0; axis < 3; axis++) {
         for (int32_t sign = -1; sign <= 1; sign += 2) {
@@ -130,7 +126,7 @@ static void test_gravity_limits_on_every_axis(void)
     }
 }
 
-static void test_gravity_of_extreme_states_does_not_wrap(void)
+TEST(test_gravity_of_extreme_states_does_not_wrap)
 {
     const int32_t limit_q8 = (int32_t)4608 * 256;
     TEST_ASSERT_FALSE(tilt_gravity_plausible((const int32_t[]){ limit_q8, limit_q8, limit_q8 }));
@@ -140,20 +136,4 @@ static void test_gravity_of_extreme_states_does_not_wrap(void)
     for (int32_t a = 43552; a <= limit_q8; a += 97) { /* 1.151 g / sqrt(3) in Q8 */
         TEST_ASSERT_FALSE(tilt_gravity_plausible((const int32_t[]){ a, -a, a }));
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_isqrt_is_exact_around_every_square);
-    RUN_TEST(test_atan2_on_axes_and_diagonals_is_exact);
-    RUN_TEST(test_atan2_just_below_the_cut_gives_180_not_minus_180);
-    RUN_TEST(test_atan2_accepts_every_int32);
-    RUN_TEST(test_no_acceleration_is_defined);
-    RUN_TEST(test_roll_is_kept_at_the_singularity_and_found_again);
-    RUN_TEST(test_signs_follow_the_data_sheet_orientations);
-    RUN_TEST(test_mirrored_vectors_give_mirrored_angles);
-    RUN_TEST(test_gravity_limits_on_every_axis);
-    RUN_TEST(test_gravity_of_extreme_states_does_not_wrap);
-    return UNITY_END();
 }

@@ -3,8 +3,8 @@
 #include "support/filters.h"
 #include "support/random.h"
 #include "support/roles.h"
+#include "support/test.h"
 #include "tilt_axis.h"
-#include "unity.h"
 
 #include <math.h>
 
@@ -17,8 +17,6 @@ void setUp(void)
 {
     random_seed(&noise_source, 7);
 }
-
-void tearDown(void) {}
 
 static void begin(filter_kind_t kind, bool identify)
 {
@@ -49,7 +47,7 @@ static void hold(void)
 }
 
 /* The floor of R at 100 Hz is 3 LSB^2; 1.5 x 8^2 are 96. */
-static void test_noise_is_estimated_beside_a_law_only_where_it_does_not_itself(void)
+TEST(test_noise_is_estimated_beside_a_law_only_where_it_does_not_itself)
 {
     int own = 0;
     for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
@@ -66,7 +64,7 @@ static void test_noise_is_estimated_beside_a_law_only_where_it_does_not_itself(v
     TEST_ASSERT_GREATER_THAN_INT(0, own);
 }
 
-static void test_a_law_that_does_not_identify_takes_the_estimate(void)
+TEST(test_a_law_that_does_not_identify_takes_the_estimate)
 {
     begin(DEFAULT_KIND, false);
     TEST_ASSERT_EQUAL_UINT32(0, filter_own_noise_lsb2_q8(&axis.filter));
@@ -75,7 +73,7 @@ static void test_a_law_that_does_not_identify_takes_the_estimate(void)
 }
 
 /* 1.5 variances, as the estimate of noise.h; the law's mean of sizes over about 16 terms has a sigma of a fifth. */
-static void test_the_law_reports_the_r_of_the_noise(void)
+TEST(test_the_law_reports_the_r_of_the_noise)
 {
     for (double sigma_lsb = 2.0; sigma_lsb < 70.0; sigma_lsb *= 2.0) {
         double sum = 0.0;
@@ -89,7 +87,7 @@ static void test_the_law_reports_the_r_of_the_noise(void)
 }
 
 /* Two sigmas off what was held is a healthy sample, seven are none; quiet sensors have the floor's: sqrt(2) LSB. */
-static void test_after_a_hold_the_laws_noise_decides_who_is_near(void)
+TEST(test_after_a_hold_the_laws_noise_decides_who_is_near)
 {
     static const double sigmas_lsb[] = { 0.5, 1.4, 10.0, 40.0 };
     for (size_t i = 0; i < sizeof sigmas_lsb / sizeof sigmas_lsb[0]; i++) {
@@ -112,7 +110,7 @@ static void test_after_a_hold_the_laws_noise_decides_who_is_near(void)
 }
 
 /* sqrt(8) sigmas by R: at its floor at 100 Hz, 3 LSB^2, 4 LSB are near and 5 are none. */
-static void test_near_is_up_to_the_root_of_eight_r(void)
+TEST(test_near_is_up_to_the_root_of_eight_r)
 {
     static const double sigmas_lsb[] = { 0.0, 8.0 };
     for (size_t i = 0; i < 2; i++) {
@@ -127,15 +125,4 @@ static void test_near_is_up_to_the_root_of_eight_r(void)
             TEST_ASSERT_EQUAL_UINT8(fabs((double)off_lsb) <= most_lsb ? 0 : 2, axis.away);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_noise_is_estimated_beside_a_law_only_where_it_does_not_itself);
-    RUN_TEST(test_a_law_that_does_not_identify_takes_the_estimate);
-    RUN_TEST(test_the_law_reports_the_r_of_the_noise);
-    RUN_TEST(test_after_a_hold_the_laws_noise_decides_who_is_near);
-    RUN_TEST(test_near_is_up_to_the_root_of_eight_r);
-    return UNITY_END();
 }

@@ -1,8 +1,8 @@
 /* What the facade's calls change between samples: a start, another law, a calibration. */
 #include "filter_list.h"
 #include "support/roles.h"
+#include "support/test.h"
 #include "tilt_filter.h"
-#include "unity.h"
 
 #include <string.h>
 
@@ -13,8 +13,6 @@ void setUp(void)
     TEST_ASSERT_TRUE(tilt_filter_begin(&tilt, 100));
 }
 
-void tearDown(void) {}
-
 static void rest(int x, int y, int z)
 {
     for (int i = 0; i < 200; i++) {
@@ -23,7 +21,7 @@ static void rest(int x, int y, int z)
 }
 
 /* All that a program may read has a value before the first sample, whatever the memory held. */
-static void test_a_start_sets_every_result(void)
+TEST(test_a_start_sets_every_result)
 {
     tilt_filter_t t;
     memset(&t, 0x5A, sizeof t);
@@ -34,7 +32,7 @@ static void test_a_start_sets_every_result(void)
 }
 
 /* After a restart there is no held value to rejoin: the next sample is a first one, wherever it lies. */
-static void test_a_restart_takes_the_first_sample(void)
+TEST(test_a_restart_takes_the_first_sample)
 {
     rest(0, 0, 256);
     for (int i = 0; i < 30; i++) {
@@ -47,7 +45,7 @@ static void test_a_restart_takes_the_first_sample(void)
 }
 
 /* Between two samples: until the next one the angles stay where they are. */
-static void test_another_law_in_a_gap_holds_the_angles(void)
+TEST(test_another_law_in_a_gap_holds_the_angles)
 {
     rest(-133, 154, 154);
     tilt_t held = tilt.angles;
@@ -72,7 +70,7 @@ static calibration_t on_its_edge(void)
 }
 
 /* Until a sensor is set: the calibration is not its own. */
-static void test_a_calibration_is_in_force_at_once(void)
+TEST(test_a_calibration_is_in_force_at_once)
 {
     calibration_t edge = on_its_edge();
     TEST_ASSERT_EQUAL_UINT8(CALIBRATION_GOOD, tilt_filter_calibrate(&tilt, &edge).why);
@@ -88,7 +86,7 @@ static void test_a_calibration_is_in_force_at_once(void)
     TEST_ASSERT_EQUAL_INT32(256 * 256, tilt.a_q8[2]);
 }
 
-static void test_an_illegal_calibration_is_named_and_changes_nothing(void)
+TEST(test_an_illegal_calibration_is_named_and_changes_nothing)
 {
     calibration_t edge = on_its_edge();
     edge.scale_lsb_per_g_uq6[1] = CALIBRATION_SCALE_UQ6(199U);
@@ -97,15 +95,4 @@ static void test_an_illegal_calibration_is_named_and_changes_nothing(void)
     TEST_ASSERT_EQUAL_UINT8(CALIBRATION_SCALE, verdict.why);
     TEST_ASSERT_EQUAL_UINT8(1, verdict.where);
     TEST_ASSERT_EQUAL_MEMORY(&before, &tilt, sizeof tilt);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_a_start_sets_every_result);
-    RUN_TEST(test_a_restart_takes_the_first_sample);
-    RUN_TEST(test_another_law_in_a_gap_holds_the_angles);
-    RUN_TEST(test_a_calibration_is_in_force_at_once);
-    RUN_TEST(test_an_illegal_calibration_is_named_and_changes_nothing);
-    return UNITY_END();
 }

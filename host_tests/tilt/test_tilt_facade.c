@@ -4,11 +4,10 @@
 #include "support/random.h"
 #include "support/recordings.h"
 #include "support/roles.h"
+#include "support/test.h"
 #include "tilt_filter.h"
-#include "unity.h"
 
 #include <stdio.h>
-#include <string.h>
 
 static tilt_filter_t tilt;
 static char text[200];
@@ -17,8 +16,6 @@ void setUp(void)
 {
     TEST_ASSERT_TRUE(tilt_filter_begin(&tilt, 100));
 }
-
-void tearDown(void) {}
 
 static void rest(tilt_filter_t *t, int x, int y, int z)
 {
@@ -30,7 +27,7 @@ static void rest(tilt_filter_t *t, int x, int y, int z)
 /* --- angles and flags of plain cases --- */
 
 /* 3, 4, 5: atan2(4, 3) = 53.13 degrees; 265 LSB per g on x and y, 256 on z. */
-static void test_angles_of_a_sensor_at_rest(void)
+TEST(test_angles_of_a_sensor_at_rest)
 {
     rest(&tilt, 0, 212, 154); /* 0.8 g, 0.6016 g: 53.06 degrees */
     TEST_ASSERT_INT16_WITHIN(3, 5306, tilt.angles.roll_cdeg);
@@ -40,7 +37,7 @@ static void test_angles_of_a_sensor_at_rest(void)
     TEST_ASSERT_INT16_WITHIN(3, 3006, tilt.angles.pitch_cdeg);
 }
 
-static void test_flags_of_the_start(void)
+TEST(test_flags_of_the_start)
 {
     for (int i = 0; i < FILTER_WARM_UP_SAMPLES; i++) {
         tilt_filter_update(&tilt, 0, 0, 256);
@@ -52,7 +49,7 @@ static void test_flags_of_the_start(void)
     TEST_ASSERT_EQUAL_HEX16(TILT_COASTED, tilt.flags);
 }
 
-static void test_flags_of_no_gravity_and_no_roll(void)
+TEST(test_flags_of_no_gravity_and_no_roll)
 {
     rest(&tilt, 0, 0, 200); /* 0.78 g */
     TEST_ASSERT_EQUAL_HEX16(TILT_NOT_GRAVITY, tilt.flags);
@@ -63,7 +60,7 @@ static void test_flags_of_no_gravity_and_no_roll(void)
     TEST_ASSERT_TRUE(tilt.angles.roll_cdeg != 0 && roll_cdeg != 0);
 }
 
-static void test_a_reading_at_the_end_of_its_range_is_flagged(void)
+TEST(test_a_reading_at_the_end_of_its_range_is_flagged)
 {
     static const int16_t at_rail[] = { 4095, INT16_MAX, -4096, INT16_MIN };
     static const int16_t inside[] = { 4094, -4095 };
@@ -106,7 +103,7 @@ static void compare_with_13_bits(uint8_t bits, uint16_t lsb_per_g, uint8_t place
     }
 }
 
-static void test_sensors_with_more_bits(void)
+TEST(test_sensors_with_more_bits)
 {
     compare_with_13_bits(14, 512, 1);
     compare_with_13_bits(16, 2048, 3);  /* MPU-6050, 16 g */
@@ -114,7 +111,7 @@ static void test_sensors_with_more_bits(void)
     compare_with_13_bits(12, 1024, 2);  /* fewer bits, but finer */
 }
 
-static void test_the_rails_of_other_sensors(void)
+TEST(test_the_rails_of_other_sensors)
 {
     static const struct {
         uint8_t bits;
@@ -135,7 +132,7 @@ static void test_the_rails_of_other_sensors(void)
     }
 }
 
-static void test_an_illegal_sensor_changes_nothing(void)
+TEST(test_an_illegal_sensor_changes_nothing)
 {
     static const struct {
         uint8_t bits;
@@ -153,7 +150,7 @@ static void test_an_illegal_sensor_changes_nothing(void)
 
 /* --- any input --- */
 
-static void test_an_illegal_rate_gives_the_nearest(void)
+TEST(test_an_illegal_rate_gives_the_nearest)
 {
     TEST_ASSERT_FALSE(tilt_filter_begin(&tilt, 0));
     TEST_ASSERT_EQUAL_UINT(50, tilt.rate_dhz);
@@ -167,7 +164,7 @@ static void test_an_illegal_rate_gives_the_nearest(void)
     TEST_ASSERT_TRUE(tilt_filter_begin(&tilt, 4000));
 }
 
-static void test_an_illegal_parameter_is_named_and_changes_nothing(void)
+TEST(test_an_illegal_parameter_is_named_and_changes_nothing)
 {
     const filter_law_t *robust = filter_listed(robust_kind());
     uint8_t gate = parameter_named(robust_kind(), "gate");
@@ -212,7 +209,7 @@ static void any_call(test_random_t *random)
 }
 
 /* Bounds of calibration.h: 10,394 of 1/256 g; the sanitizers look for all else. */
-static void test_any_calls_stay_within_bounds(void)
+TEST(test_any_calls_stay_within_bounds)
 {
     test_random_t random;
     random_seed(&random, 11);
@@ -264,7 +261,7 @@ static void check_healthy(const char *name, const stream_t *stream, uint16_t rat
     }
 }
 
-static void test_healthy_samples_of_shipped_streams_are_taken(void)
+TEST(test_healthy_samples_of_shipped_streams_are_taken)
 {
     static const char *const healthy[] = { "rest-0.7lsb", "rest-2lsb", "rest-4lsb",        "rest-8lsb",
                                            "tilt-slow",   "tilt-fast", "through-pitch-90", "through-roll-180" };
@@ -284,7 +281,7 @@ static void test_healthy_samples_of_shipped_streams_are_taken(void)
  */
 #define RATE_MAX_DHZ 8000U
 
-static void test_healthy_samples_of_recordings_are_taken(void)
+TEST(test_healthy_samples_of_recordings_are_taken)
 {
     static recordings_t recordings;
     if (!recordings_there()) {
@@ -306,22 +303,4 @@ static void test_healthy_samples_of_recordings_are_taken(void)
         stream_free(&stream);
     }
     TEST_ASSERT_EQUAL_UINT(12, judged);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_angles_of_a_sensor_at_rest);
-    RUN_TEST(test_flags_of_the_start);
-    RUN_TEST(test_flags_of_no_gravity_and_no_roll);
-    RUN_TEST(test_a_reading_at_the_end_of_its_range_is_flagged);
-    RUN_TEST(test_sensors_with_more_bits);
-    RUN_TEST(test_the_rails_of_other_sensors);
-    RUN_TEST(test_an_illegal_sensor_changes_nothing);
-    RUN_TEST(test_an_illegal_rate_gives_the_nearest);
-    RUN_TEST(test_an_illegal_parameter_is_named_and_changes_nothing);
-    RUN_TEST(test_any_calls_stay_within_bounds);
-    RUN_TEST(test_healthy_samples_of_shipped_streams_are_taken);
-    RUN_TEST(test_healthy_samples_of_recordings_are_taken);
-    return UNITY_END();
 }

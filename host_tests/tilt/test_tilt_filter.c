@@ -4,13 +4,13 @@
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support/filters.h"
+#include "support/path.h"
 #include "support/random.h"
 #include "support/shipped.h"
+#include "support/test.h"
 #include "tilt_filter.h"
-#include "unity.h"
 
 #include <stdio.h>
-#include <string.h>
 
 /* Flags that are not of the sample path: of the driver and the bus, of the rows, of the supervisor of `auto`. */
 #define OF_THE_BOARD (ROW_FAULT | ROW_STUCK | ROW_INTEGRITY | ROW_DROPPED | ROW_LEFT_OUT)
@@ -18,10 +18,6 @@
 static tilt_filter_t tilt;
 static char text[400];
 static uint8_t first_rows;
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 _Static_assert((int)TILT_GATED == (int)ROW_GATED && (int)TILT_COASTED == (int)ROW_COASTED &&
                    (int)TILT_REACQUIRED == (int)ROW_REACQUIRED && (int)TILT_CLIPPED == (int)ROW_CLIPPED &&
@@ -33,14 +29,7 @@ _Static_assert((int)TILT_GATED == (int)ROW_GATED && (int)TILT_COASTED == (int)RO
 
 static void begin_both(uint8_t kind, uint16_t rate_dhz)
 {
-    coast_wait(0);
-    pipeline_reset();
-    settings_defaults();
-    pipeline_calibrate(&settings()->calibration);
-    settings_take_filter(kind);
-    pipeline_forget();
-    pipeline_change(&settings()->choice, rate_dhz, 16);
-    pipeline_finish();
+    path_start(kind, rate_dhz, 16, 0);
     TEST_ASSERT_TRUE(tilt_filter_begin_with(&tilt, rate_dhz / 10U, filter_listed((filter_kind_t)kind)));
     first_rows = law_facts((filter_kind_t)kind).starts_with_median ? 0 : FILTER_WARM_UP_SAMPLES;
 }
@@ -134,18 +123,11 @@ static void compare_file(const char *path, uint16_t rate_dhz)
     stream_free(&stream);
 }
 
-static void test_angles_and_flags_are_the_firmwares(void)
+TEST(test_angles_and_flags_are_the_firmwares)
 {
     for (size_t i = 0; i < SHIPPED_STREAMS; i++) {
         compare_file(shipped_streams[i].path, shipped_streams[i].rate_dhz);
     }
     compare_file("sim/streams/steps.csv", 1000);
     compare_file("sim/streams/steps-outliers.csv", 1000);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_angles_and_flags_are_the_firmwares);
-    return UNITY_END();
 }

@@ -2,9 +2,9 @@
  * Angles from two axes and |a| = 1 g, against asin and acos in double over whole circles, and what noise makes of them.
  */
 #include "support/random.h"
+#include "support/test.h"
 #include "tilt.h"
 #include "tilt_partial.h"
-#include "unity.h"
 
 #include <math.h>
 
@@ -12,10 +12,6 @@
 #define G_Q8 65536.0
 #define DEG_PER_RAD 57.295779513082320877
 #define ANGLES_BOUND_DEG 0.0289 /* test_tilt_reference.c */
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 typedef struct {
     double x, y, z;
@@ -53,7 +49,7 @@ static double bound_deg(double missing_g)
 }
 
 /* Roll without z is asin(y), without y acos(z), with the sign known; while the component is above a tenth of 1 g. */
-static void test_roll_over_the_whole_circle(void)
+TEST(test_roll_over_the_whole_circle)
 {
     for (int tenth = -1800; tenth < 1800; tenth++) {
         double roll_deg = tenth / 10.0;
@@ -72,7 +68,7 @@ static void test_roll_over_the_whole_circle(void)
 }
 
 /* Both angles on the sphere, each axis left out. */
-static void test_both_angles_on_the_sphere(void)
+TEST(test_both_angles_on_the_sphere)
 {
     for (int roll = -178; roll <= 180; roll += 2) {
         for (int pitch = -88; pitch <= 88; pitch += 2) {
@@ -92,7 +88,7 @@ static void test_both_angles_on_the_sphere(void)
 }
 
 /* The sign is the last good one's: with the other one the angle is mirrored. */
-static void test_the_sign_is_that_of_the_last_good_sample(void)
+TEST(test_the_sign_is_that_of_the_last_good_sample)
 {
     vector_t a = at_angles(30.0, 0.0);
     vector_t mirrored = at_angles(150.0, 0.0);
@@ -102,7 +98,7 @@ static void test_the_sign_is_that_of_the_last_good_sample(void)
 }
 
 /* Noise of 4 mg on both axes: sigma of asin, acos and of both axes' arc tangent at four angles (rms, degree). */
-static void test_sigmas_of_the_table(void)
+TEST(test_sigmas_of_the_table)
 {
     static const struct {
         double angle_deg, asin_deg, acos_deg, atan_deg;
@@ -134,7 +130,7 @@ static void test_sigmas_of_the_table(void)
 }
 
 /* 4 mg over the component: 1 / cos and 1 / sin to first order; nothing is known where nothing is left. */
-static void test_the_sigma_reported(void)
+TEST(test_the_sigma_reported)
 {
     uint16_t sigma_q8 = (uint16_t)lrint(0.004 * G_Q8);
     for (int deg = 0; deg < 90; deg++) {
@@ -158,7 +154,7 @@ static void test_the_sigma_reported(void)
  * The bound of tilt_missing_q6, where all three parts are cut by most of a unit: the square of the result is too large
  * by less than 2 (x + y + z) + 3 <= 2 sqrt(3) 16384 + 3, and its root is cut.
  */
-static void test_the_missing_component_is_within_its_bound(void)
+TEST(test_the_missing_component_is_within_its_bound)
 {
     test_random_t random;
     random_seed(&random, SEED);
@@ -184,24 +180,11 @@ static void test_the_missing_component_is_within_its_bound(void)
 }
 
 /* Beyond 1 g nothing is missing; no size of an input overflows. */
-static void test_more_than_gravity_leaves_nothing(void)
+TEST(test_more_than_gravity_leaves_nothing)
 {
     TEST_ASSERT_EQUAL_UINT16(16384, tilt_missing_q6(0, 0, 0));
     TEST_ASSERT_EQUAL_UINT16(0, tilt_missing_q6(65536, 0, 0));
     TEST_ASSERT_EQUAL_UINT16(0, tilt_missing_q6(INT32_MAX, INT32_MIN, INT32_MAX));
     TEST_ASSERT_EQUAL_UINT16(0, tilt_missing_q6(50000, -50000, 0));
     TEST_ASSERT_UINT_WITHIN(2, 11585, tilt_missing_q6(46341, 0, 0)); /* 16384 / sqrt(2) */
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_roll_over_the_whole_circle);
-    RUN_TEST(test_both_angles_on_the_sphere);
-    RUN_TEST(test_the_sign_is_that_of_the_last_good_sample);
-    RUN_TEST(test_sigmas_of_the_table);
-    RUN_TEST(test_the_sigma_reported);
-    RUN_TEST(test_the_missing_component_is_within_its_bound);
-    RUN_TEST(test_more_than_gravity_leaves_nothing);
-    return UNITY_END();
 }

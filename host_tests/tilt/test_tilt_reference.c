@@ -11,8 +11,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "support/test.h"
 #include "tilt.h"
-#include "unity.h"
 
 #define ATAN2_BOUND_DEG 0.0204
 #define PITCH_BOUND_DEG 0.0289
@@ -29,8 +29,6 @@ void setUp(void)
     worst_roll_deg = 0.0;
     worst_pitch_deg = 0.0;
 }
-
-void tearDown(void) {}
 
 /* xorshift32, seed fixed */
 static uint32_t next_random(uint32_t *state)
@@ -63,7 +61,7 @@ static void check_root(uint32_t v)
     }
 }
 
-static void test_isqrt_is_exact_on_a_stride_through_all_words(void)
+TEST(test_isqrt_is_exact_on_a_stride_through_all_words)
 {
     for (uint32_t i = 0; i < (1UL << 24); i++) {
         check_root(i * 256U + (i & 0xFFU));
@@ -90,7 +88,7 @@ static double worst_of_octants(int32_t a, int32_t b)
     return worst;
 }
 
-static void test_atan2_over_every_16_bit_ratio_in_all_octants(void)
+TEST(test_atan2_over_every_16_bit_ratio_in_all_octants)
 {
     double worst = 0.0;
     for (int32_t n = 0; n <= 65536; n++) {
@@ -100,7 +98,7 @@ static void test_atan2_over_every_16_bit_ratio_in_all_octants(void)
     TEST_ASSERT_TRUE(worst <= ATAN2_BOUND_DEG);
 }
 
-static void test_atan2_at_every_magnitude(void)
+TEST(test_atan2_at_every_magnitude)
 {
     uint32_t random = 20250101U;
     double worst = 0.0;
@@ -153,17 +151,17 @@ static void check_sphere(double radius_lsb)
     TEST_ASSERT_TRUE(worst_pitch_deg <= PITCH_BOUND_DEG && PITCH_BOUND_DEG <= GOAL_DEG);
 }
 
-static void test_angles_on_the_smallest_sphere(void)
+TEST(test_angles_on_the_smallest_sphere)
 {
     check_sphere(64.0);
 }
 
-static void test_angles_on_the_sphere_of_one_g(void)
+TEST(test_angles_on_the_sphere_of_one_g)
 {
     check_sphere(256.0);
 }
 
-static void test_angles_in_the_whole_box_of_states(void)
+TEST(test_angles_in_the_whole_box_of_states)
 {
     const int32_t limit_q8 = 4608 * 256;
     uint32_t random = 20250102U;
@@ -186,7 +184,7 @@ static void test_angles_in_the_whole_box_of_states(void)
     TEST_ASSERT_TRUE(worst_pitch_deg <= PITCH_BOUND_DEG);
 }
 
-static void test_gravity_verdict_equals_the_double_one_away_from_the_limits(void)
+TEST(test_gravity_verdict_equals_the_double_one_away_from_the_limits)
 {
     uint32_t random = 20250104U;
     uint32_t judged = 0;
@@ -202,17 +200,4 @@ static void test_gravity_verdict_equals_the_double_one_away_from_the_limits(void
         }
     }
     TEST_ASSERT_TRUE(judged > 490000U);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_isqrt_is_exact_on_a_stride_through_all_words);
-    RUN_TEST(test_atan2_over_every_16_bit_ratio_in_all_octants);
-    RUN_TEST(test_atan2_at_every_magnitude);
-    RUN_TEST(test_angles_on_the_smallest_sphere);
-    RUN_TEST(test_angles_on_the_sphere_of_one_g);
-    RUN_TEST(test_angles_in_the_whole_box_of_states);
-    RUN_TEST(test_gravity_verdict_equals_the_double_one_away_from_the_limits);
-    return UNITY_END();
 }

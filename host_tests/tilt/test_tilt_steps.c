@@ -6,8 +6,8 @@
 #include <math.h>
 
 #include "support/documented_limits.h"
+#include "support/test.h"
 #include "tilt.h"
-#include "unity.h"
 
 #define UNITS_PER_RAD (800.0 * 57.295779513082320877)
 
@@ -20,17 +20,13 @@ enum { TERMS = 4 };
  */
 static const double minimax[TERMS] = { 45800.58743338, 14721.57618335, 6704.26916951, 1787.01017797 };
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
 static double polynomial(const double c[TERMS], double r)
 {
     double r2 = r * r;
     return r * (c[0] - r2 * (c[1] - r2 * (c[2] - r2 * c[3])));
 }
 
-static void test_the_coefficients_are_those_of_the_best_polynomial(void)
+TEST(test_the_coefficients_are_those_of_the_best_polynomial)
 {
     enum { STEPS = 100000 };
     double extremes[TERMS + 2] = { 0.0 };
@@ -56,7 +52,7 @@ static void test_the_coefficients_are_those_of_the_best_polynomial(void)
  * more on average. A ratio is cut by 2^-17 on average, which takes 0.17 units, its square gives back 0.05. So the mean
  * is 0.38 units above the polynomial of whole coefficients; 20,000 ratios scatter by 2.3 / sqrt(20,000) = 0.02.
  */
-static void test_the_coefficients_are_rounded_to_whole_units(void)
+TEST(test_the_coefficients_are_rounded_to_whole_units)
 {
     double whole[TERMS];
     for (int i = 0; i < TERMS; i++) {
@@ -74,7 +70,7 @@ static void test_the_coefficients_are_rounded_to_whole_units(void)
 /* a, b, c of (sqrt(1 + q) / 2 - 1/2) 2^16 = q (a - q (b - c q)) on 0..1, relative error of the root least: the same. */
 static const double minimax_length[3] = { 16315.33749942, 3584.53972033, 845.99267662 };
 
-static void test_the_coefficients_of_the_length_are_those_of_the_best_polynomial(void)
+TEST(test_the_coefficients_of_the_length_are_those_of_the_best_polynomial)
 {
     enum { STEPS = 100000 };
     double extremes[5] = { 0.0 };
@@ -102,7 +98,7 @@ static void test_the_coefficients_of_the_length_are_those_of_the_best_polynomial
  * unit of itself, some 28,000, and 0.35 units of 46,341 as equal legs give 65,535: together 3.6e-5. That raises pitch
  * by half of it, 0.83 units of 1/800 degree, beside the 0.38 of the arc tangent. One unit in a coefficient makes 0.5.
  */
-static void test_the_coefficients_of_the_length_are_rounded_to_whole_units(void)
+TEST(test_the_coefficients_of_the_length_are_rounded_to_whole_units)
 {
     double whole[TERMS];
     for (int i = 0; i < TERMS; i++) {
@@ -144,7 +140,7 @@ static double square_q12(int percent)
     return pow(163.84 * percent, 2.0);
 }
 
-static void test_the_limits_of_gravity_to_the_last_unit(void)
+TEST(test_the_limits_of_gravity_to_the_last_unit)
 {
     uint32_t least_q12 = (uint32_t)ceil(square_q12(100 - LIMIT_GRAVITY_PERCENT));
     uint32_t most_q12 = (uint32_t)floor(square_q12(100 + LIMIT_GRAVITY_PERCENT));
@@ -157,7 +153,7 @@ static void test_the_limits_of_gravity_to_the_last_unit(void)
 }
 
 /* 1 g and a huge number across is not 1 g. */
-static void test_a_huge_axis_is_not_left_out(void)
+TEST(test_a_huge_axis_is_not_left_out)
 {
     for (int32_t huge = 131072; huge < (1 << 30); huge *= 2) {
         TEST_ASSERT_FALSE(tilt_gravity_plausible((const int32_t[]){ huge, 0, 65536 }));
@@ -167,7 +163,7 @@ static void test_a_huge_axis_is_not_left_out(void)
 }
 
 /* |(y, z)| of 4 LSB is enough for roll, a unit of Q8 less is not. */
-static void test_the_limit_of_roll(void)
+TEST(test_the_limit_of_roll)
 {
     tilt_t tilt = { 0 };
     tilt_angles(&tilt, (const int32_t[]){ 65536, 256 * LIMIT_ROLL_MIN_LSB, 0 });
@@ -191,7 +187,7 @@ static void check_point(int32_t x, int32_t y, int32_t z)
 }
 
 /* x is 0.25 g or more and nearly all of it: y and z are scaled up to 15 bits, and their length back. */
-static void test_pitch_near_the_poles(void)
+TEST(test_pitch_near_the_poles)
 {
     static const int32_t far_q8[] = { 16384, -16384, 65536, -1179648 };
     for (size_t i = 0; i < 4; i++) {
@@ -205,7 +201,7 @@ static void test_pitch_near_the_poles(void)
 }
 
 /* The same direction at any size: both legs, and x with them, are shifted down by what does not fit. */
-static void test_pitch_of_any_size(void)
+TEST(test_pitch_of_any_size)
 {
     for (int bits = 14; bits <= 30; bits++) {
         for (int32_t part = 8; part <= 16; part++) {
@@ -216,19 +212,4 @@ static void test_pitch_of_any_size(void)
             check_point(one, one / 50, one / 1000);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_the_coefficients_are_those_of_the_best_polynomial);
-    RUN_TEST(test_the_coefficients_are_rounded_to_whole_units);
-    RUN_TEST(test_the_coefficients_of_the_length_are_those_of_the_best_polynomial);
-    RUN_TEST(test_the_coefficients_of_the_length_are_rounded_to_whole_units);
-    RUN_TEST(test_the_limits_of_gravity_to_the_last_unit);
-    RUN_TEST(test_a_huge_axis_is_not_left_out);
-    RUN_TEST(test_the_limit_of_roll);
-    RUN_TEST(test_pitch_near_the_poles);
-    RUN_TEST(test_pitch_of_any_size);
-    return UNITY_END();
 }

@@ -1,18 +1,14 @@
 #!/usr/bin/env python3
-"""Tests of tools/plot_run.py on runs made here, whose errors, counts and matches are known. Run from the repository
-root with the Python that has numpy and matplotlib (build/venv/bin/python). Ends with a line as Unity's."""
-import contextlib
-import io
+"""Tests of tools/plot_run.py on runs made here, whose errors, counts and matches are known."""
 import json
 import math
 import pathlib
 import struct
 import sys
-import tempfile
-import unittest
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+from tilt_case import InFolder, printed  # noqa: E402
 import plot_run  # noqa: E402
 
 HEADER = ",".join(plot_run.RUN_COLUMNS)
@@ -20,24 +16,14 @@ SERVED_HEADER = "served,t_us,row,line,x_lsb,y_lsb,z_lsb,roll_true_cdeg,pitch_tru
 START_US = 23_456  # of the firmware's clock at the first sample
 
 
-class Case(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.path = pathlib.Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
+class Case(InFolder):
     def write(self, name, lines, end="\n"):
-        (self.path / name).write_text("\n".join(lines) + end)
-        return str(self.path / name)
+        (self.folder / name).write_text("\n".join(lines) + end)
+        return str(self.folder / name)
 
     def plot(self, *options):
         """(exit status, stdout, stderr) of the command with a picture run.png."""
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            status = plot_run.main([*options, "--png", str(self.path / "run.png")])
-        return status, out.getvalue(), err.getvalue()
+        return printed(plot_run.main, [*options, "--png", self.folder / "run.png"])
 
 
 def reading(i):
@@ -147,7 +133,7 @@ class Command(Case):
         self.assertIn("rows 400, samples served 401, lost 1, gated 24.5 %, CPU load 8.4 %", out)
         self.assertIn("raw 2.00 degrees, filtered 1.00 degrees (0.50 of raw)", out)
         self.assertIn("not scored: 6 rows", out)
-        png = (self.path / "run.png").read_bytes()
+        png = (self.folder / "run.png").read_bytes()
         self.assertEqual(b"\x89PNG\r\n\x1a\n", png[:8])
         self.assertEqual((1200, 700), struct.unpack(">II", png[16:24]))
 
@@ -205,7 +191,7 @@ class BadInput(Case):
     def test_missing_files_and_broken_statistics(self):
         run = self.write("run.csv", made_run(count=9)[0])
         for option in ("--served", "--stream", "--stats"):
-            status, _, err = self.plot("--run", run, option, str(self.path / "absent"))
+            status, _, err = self.plot("--run", run, option, str(self.folder / "absent"))
             self.assertEqual(2, status)
             self.assertIn("absent: No such file", err)
         status, _, err = self.plot("--run", run, "--stats", self.write("bad.json", ["{", "  x"]))

@@ -1,15 +1,10 @@
 /* nav/lib record by record: what it refuses and what it survives. */
 #include "nav_running.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
-#include <string.h>
 
 #define SEED 3200
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 /* What one sensor's record, with one value in place of the good one, is answered; nothing may change but a count. */
 static int answer_with(running_t *r, int sensor, int place, double value)
@@ -49,7 +44,7 @@ static void is_refused(running_t *r, int sensor, int place, double value, int wa
     TEST_ASSERT_EQUAL(queued, r->v->queued(&r->m));
 }
 
-static void values_out_of_range_or_not_finite_are_refused(void)
+TEST(values_out_of_range_or_not_finite_are_refused)
 {
     static const struct {
         int sensor, place;
@@ -76,7 +71,7 @@ static void values_out_of_range_or_not_finite_are_refused(void)
 }
 
 /* The largest that is legal is taken. */
-static void limits_themselves_are_legal(void)
+TEST(limits_themselves_are_legal)
 {
     running_t r;
     const double fast[3] = { 40.0, -40.0, 40.0 };
@@ -88,7 +83,7 @@ static void limits_themselves_are_legal(void)
 }
 
 /* One record with NaN is one that is missing. */
-static void flight_with_bad_records_ends_where_the_good_one_does(void)
+TEST(flight_with_bad_records_ends_where_the_good_one_does)
 {
     test_random_t random;
     nav_memory_t m[2];
@@ -126,7 +121,7 @@ static void flight_with_bad_records_ends_where_the_good_one_does(void)
     }
 }
 
-static void configurations_that_are_not_legal_are_refused(void)
+TEST(configurations_that_are_not_legal_are_refused)
 {
     nav_setting_t good;
     nav_memory_t m;
@@ -165,14 +160,4 @@ static void configurations_that_are_not_legal_are_refused(void)
         TEST_ASSERT_FALSE(nav_all[v]->init(&m, &good));
         good.period_us = 10000;
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(values_out_of_range_or_not_finite_are_refused);
-    RUN_TEST(limits_themselves_are_legal);
-    RUN_TEST(flight_with_bad_records_ends_where_the_good_one_does);
-    RUN_TEST(configurations_that_are_not_legal_are_refused);
-    return UNITY_END();
 }

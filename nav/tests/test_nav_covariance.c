@@ -4,14 +4,10 @@
  */
 #include "nav_histories.h"
 #include "reference_nav.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 enum { ROWS = 5 };
 
@@ -114,7 +110,7 @@ static void is_as_noted(const nav_history_t *h, int states, const char *form)
     }
 }
 
-static void thesis_form_gives_the_table_of_the_notes(void)
+TEST(thesis_form_gives_the_table_of_the_notes)
 {
     for (int states = 9; states <= 12; states += 3) {
         nav_history_of_reference(root_of(states), REFERENCE_NAV_ROOT, states, 0);
@@ -122,7 +118,7 @@ static void thesis_form_gives_the_table_of_the_notes(void)
     }
 }
 
-static void covariance_forms_agree(void)
+TEST(covariance_forms_agree)
 {
     for (int states = 9; states <= 12; states += 3) {
         for (int form = REFERENCE_NAV_CONVENTIONAL; form < REFERENCE_NAV_FORMS; form++) {
@@ -135,7 +131,7 @@ static void covariance_forms_agree(void)
     }
 }
 
-static void ours_in_double_is_the_thesis_form(void)
+TEST(ours_in_double_is_the_thesis_form)
 {
     const nav_variant_t *const both[2] = { &n9d, &n12d };
     for (int i = 0; i < 2; i++) {
@@ -148,7 +144,7 @@ static void ours_in_double_is_the_thesis_form(void)
     }
 }
 
-static void ours_in_float_is_right_to_two_thousandths(void)
+TEST(ours_in_float_is_right_to_two_thousandths)
 {
     const nav_variant_t *const both[2] = { &n9f, &n12f };
     for (int i = 0; i < 2; i++) {
@@ -161,7 +157,7 @@ static void ours_in_float_is_right_to_two_thousandths(void)
 }
 
 /* What a state lacks between its turns, of the notes' 1.9e-3 for a round of six. */
-static void noise_in_turns_costs_four_thousandths_at_most(void)
+TEST(noise_in_turns_costs_four_thousandths_at_most)
 {
     for (int i = 0; i < NAV_ALL; i++) {
         const nav_variant_t *v = nav_all[i];
@@ -174,7 +170,7 @@ static void noise_in_turns_costs_four_thousandths_at_most(void)
 }
 
 /* (3.5) forgets the position at every step: its sigma at 399 s without GPS would be a step's, not 226 m. */
-static void printed_phi_forgets_the_position(void)
+TEST(printed_phi_forgets_the_position)
 {
     nav_history_of_reference(&other, REFERENCE_NAV_ROOT, 9, PRINTED_PHI);
     TEST_ASSERT_TRUE(other.sigma[398][0] < 0.1);
@@ -182,22 +178,9 @@ static void printed_phi_forgets_the_position(void)
 }
 
 /* (3.32) does not measure the position, which then is never better than velocity and time make it. */
-static void printed_rows_do_not_see_the_position(void)
+TEST(printed_rows_do_not_see_the_position)
 {
     nav_history_of_reference(&other, REFERENCE_NAV_ROOT, 9, PRINTED_ROWS);
     TEST_ASSERT_TRUE(other.sigma[159][0] > 50.0);
     TEST_ASSERT_TRUE(root[0].sigma[159][0] < 0.71);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(thesis_form_gives_the_table_of_the_notes);
-    RUN_TEST(covariance_forms_agree);
-    RUN_TEST(ours_in_double_is_the_thesis_form);
-    RUN_TEST(ours_in_float_is_right_to_two_thousandths);
-    RUN_TEST(noise_in_turns_costs_four_thousandths_at_most);
-    RUN_TEST(printed_phi_forgets_the_position);
-    RUN_TEST(printed_rows_do_not_see_the_position);
-    return UNITY_END();
 }

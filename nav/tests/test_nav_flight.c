@@ -1,6 +1,6 @@
 /* Closed loop: the flights of paper 003 through nav/lib, against the printed figures and the table of the notes. */
 #include "nav_flights.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,10 +8,6 @@
 #define SEED 3000
 #define DEGREE 57.29577951308232
 enum { FLIGHTS = 20 };
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static nav_flight_t flight;
 
@@ -48,7 +44,7 @@ static nav_plan_t plan_of(const nav_variant_t *v, const flight_drift_t *drift, i
 }
 
 /* Printed: "~0.5 degree, < 1". Notes: 1.02 degree, 20 flights. */
-static void nine_states_without_drift_keep_the_heading(void)
+TEST(nine_states_without_drift_keep_the_heading)
 {
     flown_t m;
     fly_all(&m, plan_of(&n9f, &flight_no_drift, 100));
@@ -56,7 +52,7 @@ static void nine_states_without_drift_keep_the_heading(void)
 }
 
 /* Printed: "< 2 degrees". The field at the 10 Hz that the UNO gets. */
-static void twelve_states_find_the_drift(void)
+TEST(twelve_states_find_the_drift)
 {
     flown_t m;
     fly_all(&m, plan_of(&n12f, &flight_gyro_drift, 10));
@@ -67,7 +63,7 @@ static void twelve_states_find_the_drift(void)
 }
 
 /* The field at 1 Hz, printed: "< 2 degrees". Notes: 1.55 of 20 flights, P95 2.7; other seeds give other medians. */
-static void twelve_states_with_a_slow_field(void)
+TEST(twelve_states_with_a_slow_field)
 {
     flown_t m;
     fly_all(&m, plan_of(&n12f, &flight_gyro_drift, 100));
@@ -75,19 +71,9 @@ static void twelve_states_with_a_slow_field(void)
 }
 
 /* Twin: without a state for it the drift makes the heading err by more than twice as much. */
-static void nine_states_do_not(void)
+TEST(nine_states_do_not)
 {
     flown_t m;
     fly_all(&m, plan_of(&n9f, &flight_gyro_drift, 100));
     TEST_ASSERT_TRUE(m.heading_without > 4.0);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(nine_states_without_drift_keep_the_heading);
-    RUN_TEST(twelve_states_find_the_drift);
-    RUN_TEST(twelve_states_with_a_slow_field);
-    RUN_TEST(nine_states_do_not);
-    return UNITY_END();
 }

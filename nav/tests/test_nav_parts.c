@@ -1,14 +1,10 @@
 /* Pieces of nav/lib: tau and the strapdown. */
 #include "nav_flights.h"
 #include "reference_nav.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <string.h>
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static const double weight[3] = { 0, 0, -FLIGHT_GRAVITY };
 
@@ -33,7 +29,7 @@ static void square(double out[9], const double t[9])
 }
 
 /* The field of the paper's place, nT; its numbers from the notes. */
-static void tau_is_orthogonal_and_turns_the_field_to_the_first_axis(void)
+TEST(tau_is_orthogonal_and_turns_the_field_to_the_first_axis)
 {
     const double nanotesla[3] = { 17818.0, 1951.0, 41847.0 };
     const double want[9] = { .391395644,  .042856263,  .919224015,  -.042856263, .998679988,
@@ -63,7 +59,7 @@ static void tau_is_orthogonal_and_turns_the_field_to_the_first_axis(void)
     }
 }
 
-static void tau_of_directions_that_have_none_is_refused(void)
+TEST(tau_of_directions_that_have_none_is_refused)
 {
     const double none[4][3] = { { 0, 0, 0 }, { -1, 0, 0 }, { NAN, 0, 1 }, { 1e20, 0, 0 } };
     double rows[6];
@@ -75,7 +71,7 @@ static void tau_of_directions_that_have_none_is_refused(void)
 }
 
 /* (3.34) with another length: tau tau' = p^2 I needs p + mag1 in the denominator. */
-static void printed_tau_is_orthogonal_for_unit_length_only(void)
+TEST(printed_tau_is_orthogonal_for_unit_length_only)
 {
     const double mag[3] = { 0.7828, 0.0858, 1.8384 };
     double tau[9];
@@ -92,7 +88,7 @@ static void printed_tau_is_orthogonal_for_unit_length_only(void)
 }
 
 /* A turn at a constant rate: the rotation of a step against sine and cosine, and its error as the header has it. */
-static void step_turns_by_the_rotation_vector(void)
+TEST(step_turns_by_the_rotation_vector)
 {
     for (double angle = 0.01; angle < 0.5; angle *= 1.3) {
         nav_values_t s = { { 1, 0, 0, 0 }, { 0 }, { 0 }, { 0 } };
@@ -106,7 +102,7 @@ static void step_turns_by_the_rotation_vector(void)
 }
 
 /* Without noise and drift the flight is followed for 500 s to what linear motion within 10 ms leaves out. */
-static void exact_records_are_followed(void)
+TEST(exact_records_are_followed)
 {
     flight_truth_t truth;
     nav_values_t s;
@@ -139,7 +135,7 @@ static void exact_records_are_followed(void)
 }
 
 /* From rest with 10 m/s^2 upwards for 0.1 s: 1 m/s and 0.05 m. */
-static void step_goes_with_the_mean_velocity(void)
+TEST(step_goes_with_the_mean_velocity)
 {
     nav_values_t s = { { 1, 0, 0, 0 }, { 0 }, { 0 }, { 0 } };
     double ned[3];
@@ -156,7 +152,7 @@ static bool near(double want, double is, bool in_double)
 }
 
 /* Behind a round of all jobs at one time each variance has grown by its walk's square per period, by nothing else. */
-static void noise_adds_each_walk_to_its_own_states(void)
+TEST(noise_adds_each_walk_to_its_own_states)
 {
     for (int v = 0; v < NAV_ALL; v++) {
         const nav_variant_t *n = nav_all[v];
@@ -185,7 +181,7 @@ static void noise_adds_each_walk_to_its_own_states(void)
 }
 
 /* From nothing known to vary: P = c a a', the definition, and what has variance 0 keeps it. */
-static void spread_from_zero_is_the_outer_product(void)
+TEST(spread_from_zero_is_the_outer_product)
 {
     static const double none[4] = { 0, 0, 0, 0 };
     for (int v = 0; v < NAV_ALL; v++) {
@@ -207,18 +203,4 @@ static void spread_from_zero_is_the_outer_product(void)
             }
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(tau_is_orthogonal_and_turns_the_field_to_the_first_axis);
-    RUN_TEST(tau_of_directions_that_have_none_is_refused);
-    RUN_TEST(printed_tau_is_orthogonal_for_unit_length_only);
-    RUN_TEST(step_turns_by_the_rotation_vector);
-    RUN_TEST(step_goes_with_the_mean_velocity);
-    RUN_TEST(exact_records_are_followed);
-    RUN_TEST(noise_adds_each_walk_to_its_own_states);
-    RUN_TEST(spread_from_zero_is_the_outer_product);
-    return UNITY_END();
 }

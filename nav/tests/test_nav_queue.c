@@ -1,16 +1,12 @@
 /* The queue: scalars one per slot against all at once, late epochs, what is taken when. */
 #include "nav_flights.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #define SEED 3100
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static nav_flight_t spread, once;
 
@@ -35,7 +31,7 @@ static void fly_both(const nav_variant_t *v)
  * four times that at most in 150 epochs of 12 states. What is of second order in the age is g mu (0.15 s)^2 / 2 = 1e-4
  * m here.
  */
-static void spread_scalars_give_what_all_at_once_give(void)
+TEST(spread_scalars_give_what_all_at_once_give)
 {
     fly_both(&n12d);
     double sigma_off = 0.0;
@@ -65,7 +61,7 @@ static void spread_scalars_give_what_all_at_once_give(void)
 }
 
 /* 6 (GPS) + 1 + 2 wait behind a full second, and are used within 13 slots: 1 to take in, 9, and 3 of noise between. */
-static void nine_scalars_wait_and_are_used_in_thirteen_slots(void)
+TEST(nine_scalars_wait_and_are_used_in_thirteen_slots)
 {
     nav_memory_t m;
     nav_setting_t setting;
@@ -132,7 +128,7 @@ static double error_after(const nav_variant_t *v, uint32_t age_us, uint32_t said
 }
 
 /* 6 m/s x 120 ms = 0.72 m. */
-static void late_epoch_between_two_records_is_interpolated(void)
+TEST(late_epoch_between_two_records_is_interpolated)
 {
     for (int i = 0; i < NAV_ALL; i++) {
         TEST_ASSERT_TRUE(error_after(nav_all[i], 123500, 123500, 0.0) < 0.01);
@@ -146,7 +142,7 @@ static void late_epoch_between_two_records_is_interpolated(void)
  * The epoch 123.5 ms ago tells the velocity by its way in 0.8765 s: the row's age makes it exact. Without it the way
  * would be that of 1 s, the velocity 12 % less, and the position 0.14 m off behind 1.15 s.
  */
-static void age_of_a_position_is_in_its_row(void)
+TEST(age_of_a_position_is_in_its_row)
 {
     for (int i = 0; i < NAV_ALL; i++) {
         TEST_ASSERT_TRUE(error_after(nav_all[i], 123500, 123500, 1.0) < 0.02);
@@ -184,7 +180,7 @@ static void rest(running_t *r, const nav_variant_t *v, int records)
     }
 }
 
-static void epochs_are_taken_from_150_ms_ago_to_100_ms_ahead(void)
+TEST(epochs_are_taken_from_150_ms_ago_to_100_ms_ahead)
 {
     running_t r;
     begin(&r, &n12f, 5.0);
@@ -211,7 +207,7 @@ static void epochs_are_taken_from_150_ms_ago_to_100_ms_ahead(void)
  * An epoch of the very time of the record that it waited for, which is also the newest that is remembered (20 ms
  * apart): 10 m east, and a position of 57.3 m against a GPS of 5 m goes there but for 5^2 / 57.3^2 = 0.8 %.
  */
-static void epoch_ahead_is_used_at_its_own_time(void)
+TEST(epoch_ahead_is_used_at_its_own_time)
 {
     static const double aside[3] = { 0, 10.0, 0 };
     for (int i = 0; i < NAV_ALL; i++) {
@@ -232,7 +228,7 @@ static void epoch_ahead_is_used_at_its_own_time(void)
 }
 
 /* An altimeter that was silent for more than half the clock's round, 36 minutes, is heard again at once. */
-static void sensor_silent_for_half_the_clock_is_taken(void)
+TEST(sensor_silent_for_half_the_clock_is_taken)
 {
     for (uint32_t minutes = 30; minutes <= 70; minutes += 5) {
         running_t r;
@@ -250,7 +246,7 @@ static void sensor_silent_for_half_the_clock_is_taken(void)
 }
 
 /* 150 ms ago the past must still be there when it is taken in one slot later, whatever the period. */
-static void past_reaches_back_at_every_period(void)
+TEST(past_reaches_back_at_every_period)
 {
     for (uint32_t period = 1000; period <= 100000; period += 1111) {
         running_t r;
@@ -286,7 +282,7 @@ static void settle(running_t *r, const nav_variant_t *v, const double position[3
 }
 
 /* 1 km east in one epoch: refused, counted, the state unmoved. Five in a row: believed. */
-static void gps_jump_is_gated_and_a_new_place_is_found(void)
+TEST(gps_jump_is_gated_and_a_new_place_is_found)
 {
     static const double far[3] = { 0, 1000.0, 0 };
     for (int i = 0; i < NAV_ALL; i++) {
@@ -315,7 +311,7 @@ static void gps_jump_is_gated_and_a_new_place_is_found(void)
  * Heading 0.3 rad off, known to 0.02: the field, good to 0.01, is refused (0.39 x sin 0.3 = 0.116 against 5 x 0.0128),
  * five times, then believed. Without that the heading would stay.
  */
-static void field_that_the_gate_refuses_is_believed_in_the_end(void)
+TEST(field_that_the_gate_refuses_is_believed_in_the_end)
 {
     running_t r;
     nav_values_t state;
@@ -334,20 +330,4 @@ static void field_that_the_gate_refuses_is_believed_in_the_end(void)
     TEST_ASSERT_EQUAL(5, n12d.count(&r.m, ANSWER_GATED));
     TEST_ASSERT_DOUBLE_WITHIN(3.0 * sqrt(variance[8]), 0.0, 2.0 * asin(state.quaternion[3]));
     TEST_ASSERT_TRUE(n12d.healthy(&r.m));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(spread_scalars_give_what_all_at_once_give);
-    RUN_TEST(nine_scalars_wait_and_are_used_in_thirteen_slots);
-    RUN_TEST(late_epoch_between_two_records_is_interpolated);
-    RUN_TEST(age_of_a_position_is_in_its_row);
-    RUN_TEST(epochs_are_taken_from_150_ms_ago_to_100_ms_ahead);
-    RUN_TEST(epoch_ahead_is_used_at_its_own_time);
-    RUN_TEST(sensor_silent_for_half_the_clock_is_taken);
-    RUN_TEST(past_reaches_back_at_every_period);
-    RUN_TEST(gps_jump_is_gated_and_a_new_place_is_found);
-    RUN_TEST(field_that_the_gate_refuses_is_believed_in_the_end);
-    return UNITY_END();
 }

@@ -1,15 +1,10 @@
 /* Times of IMU records: what leaps, what goes back, what is missing. */
 #include "nav_running.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
-#include <string.h>
 
-void setUp(void) {}
-
-void tearDown(void) {}
-
-static void time_that_goes_back_is_refused(void)
+TEST(time_that_goes_back_is_refused)
 {
     running_t r;
     still_begin(&r, &n12f, 0);
@@ -27,7 +22,7 @@ static void time_that_goes_back_is_refused(void)
 }
 
 /* A sender that began anew: nine records are refused, the tenth is believed, and it goes on. */
-static void clock_that_began_anew_is_believed(void)
+TEST(clock_that_began_anew_is_believed)
 {
     running_t r;
     still_begin(&r, &n12f, 1000000000U);
@@ -61,7 +56,7 @@ static void stamp_leaves_no_trace(running_t *r, uint32_t t_us, int want)
 }
 
 /* One wrong stamp, or every second one, or three in a row that do not go on from one another. */
-static void wrong_stamps_are_refused(void)
+TEST(wrong_stamps_are_refused)
 {
     static const uint32_t ahead_us[] = { 110000, 1000000, 1000000000, 2000000000 };
     for (int v = 0; v < NAV_ALL; v++) {
@@ -88,7 +83,7 @@ static void wrong_stamps_are_refused(void)
 }
 
 /* A clock stuck ahead confirms nothing; records too far apart to be bridged are believed now and then. */
-static void strays_are_believed_in_the_end(void)
+TEST(strays_are_believed_in_the_end)
 {
     running_t r;
     still_begin(&r, &n12f, 0);
@@ -106,7 +101,7 @@ static void strays_are_believed_in_the_end(void)
 }
 
 /* The first record's stamp may be the wrong one: those behind it are believed, and hardly anything is owed. */
-static void wrong_first_stamp_is_forgotten(void)
+TEST(wrong_first_stamp_is_forgotten)
 {
     static const uint32_t wrong_us[] = { 1000000000, 0xC0000000U };
     for (int early = 0; early < 2; early++) {
@@ -139,7 +134,7 @@ static void wrong_first_stamp_is_forgotten(void)
 }
 
 /* What turned before a gap has no part in a step that is bridged behind it. */
-static void bridge_behind_a_gap_forgets_the_rate_before_it(void)
+TEST(bridge_behind_a_gap_forgets_the_rate_before_it)
 {
     static const double spin[3] = { 0, 0, 10.0 };
     nav_values_t before;
@@ -159,7 +154,7 @@ static void bridge_behind_a_gap_forgets_the_rate_before_it(void)
 }
 
 /* Missing records, 2 to 10 periods: bridged. Longer: a gap, once confirmed, that owes its uncertainty. */
-static void missing_records_are_bridged_and_gaps_are_survived(void)
+TEST(missing_records_are_bridged_and_gaps_are_survived)
 {
     for (int v = 0; v < NAV_ALL; v++) {
         running_t r;
@@ -189,17 +184,4 @@ static void missing_records_are_bridged_and_gaps_are_survived(void)
             still_is_seen(&r);
         }
     }
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(time_that_goes_back_is_refused);
-    RUN_TEST(clock_that_began_anew_is_believed);
-    RUN_TEST(wrong_stamps_are_refused);
-    RUN_TEST(strays_are_believed_in_the_end);
-    RUN_TEST(wrong_first_stamp_is_forgotten);
-    RUN_TEST(bridge_behind_a_gap_forgets_the_rate_before_it);
-    RUN_TEST(missing_records_are_bridged_and_gaps_are_survived);
-    return UNITY_END();
 }

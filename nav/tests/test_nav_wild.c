@@ -1,16 +1,12 @@
 /* nav/lib under records of any kind, order and time. */
 #include "nav_flights.h"
-#include "unity.h"
+#include "support/test.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #define SEED 3300
-
-void setUp(void) {}
-
-void tearDown(void) {}
 
 static void begin(nav_memory_t *m, const nav_variant_t *v)
 {
@@ -78,7 +74,7 @@ static void any_record(const nav_variant_t *v, nav_memory_t *m, uint32_t *now, t
 }
 
 /* Anything in any order: D stays positive or 0 and finite, the attitude a rotation, and every record has an answer. */
-static void hundred_thousand_wild_records_leave_it_healthy(void)
+TEST(hundred_thousand_wild_records_leave_it_healthy)
 {
     for (int i = 0; i < NAV_ALL; i++) {
         const nav_variant_t *v = nav_all[i];
@@ -101,7 +97,7 @@ static void hundred_thousand_wild_records_leave_it_healthy(void)
 }
 
 /* Twin: the judge of the fuzz sees a covariance that is none. */
-static void unhealthy_is_seen(void)
+TEST(unhealthy_is_seen)
 {
     static const double broken[4] = { -1e-9, NAN, INFINITY, -1.0 };
     for (int i = 0; i < 4; i++) {
@@ -114,7 +110,7 @@ static void unhealthy_is_seen(void)
 }
 
 /* And a state that is none: of an attitude whose square is 1 % off, of a value that is no number. */
-static void unhealthy_state_is_seen(void)
+TEST(unhealthy_state_is_seen)
 {
     for (int i = 0; i < NAV_ALL; i++) {
         const nav_variant_t *v = nav_all[i];
@@ -142,7 +138,7 @@ static void unhealthy_state_is_seen(void)
 }
 
 /* A count that is full stays full, so that it never looks small again. */
-static void counts_stay_at_their_end(void)
+TEST(counts_stay_at_their_end)
 {
     nav_memory_t m;
     begin(&m, &n9f);
@@ -157,7 +153,7 @@ static void counts_stay_at_their_end(void)
  * variance of 0, however often the gate refuses. The field is turned by 90 degrees about east. The count of what the
  * gate refused stays at its end too.
  */
-static void attitude_known_exactly_is_believed_against_any_field(void)
+TEST(attitude_known_exactly_is_believed_against_any_field)
 {
     static const double rate[3] = { 0, 0, 0 };
     static const double force[3] = { 0, 0, -FLIGHT_GRAVITY };
@@ -187,15 +183,4 @@ static void attitude_known_exactly_is_believed_against_any_field(void)
         TEST_ASSERT_TRUE(p[(6 + i) * 9 + 6 + i] == 0.0);
     }
     TEST_ASSERT_TRUE(n9f.healthy(&m));
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(hundred_thousand_wild_records_leave_it_healthy);
-    RUN_TEST(unhealthy_is_seen);
-    RUN_TEST(unhealthy_state_is_seen);
-    RUN_TEST(counts_stay_at_their_end);
-    RUN_TEST(attitude_known_exactly_is_believed_against_any_field);
-    return UNITY_END();
 }

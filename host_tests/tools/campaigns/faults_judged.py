@@ -152,19 +152,17 @@ def a_run_that_dies_is_a_failure_with_its_command():
 
 def told_by(runs, attempt, **options):
     """(exit status, output) of a campaign of made-up runs."""
-    kept = faults.planned, faults.attempt, faults.RESULTS, faults.shares, signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)
+    kept = [(number, signal.getsignal(number)) for number in (signal.SIGTERM, signal.SIGINT)]
     wanted = {"jobs": 1, "seed": 1, "words": ["sda"], "sample": 0, "fw": FW, "no_page": True} | options
     said = io.StringIO()
     try:
-        faults.planned, faults.attempt, faults.RESULTS = lambda options: runs, attempt, OUT / "faults.json"
-        faults.shares = lambda options, extra: None
         signal.signal(signal.SIGTERM, faults.ended_by_signal)
-        with contextlib.redirect_stdout(said):
+        with contextlib.redirect_stdout(said), mock.patch.multiple(faults, planned=lambda options: runs, attempt=attempt,
+                                                                   RESULTS=OUT / "faults.json", shares=lambda options, extra: None):
             status = faults.carried_out_and_told(argparse.Namespace(**wanted), time.monotonic())
     finally:
-        faults.planned, faults.attempt, faults.RESULTS, faults.shares = kept[:4]
-        signal.signal(signal.SIGTERM, kept[4])
-        signal.signal(signal.SIGINT, kept[5])
+        for number, handler in kept:
+            signal.signal(number, handler)
     return status, said.getvalue()
 
 
@@ -201,11 +199,8 @@ def what_a_whole_campaign_lacks_is_a_failure():
     runs += [((kind,), (f"{1010 + n}ms",), LIGHT) for kind in faults_kinds.LONG for n in range(8)]
     runs += [(pair, (f"{1000 + n}ms",) * 2, LIGHT) for pair in faults.itertools.combinations(faults_kinds.KINDS, 2) for n in (0, 2, 3, 4, 5)]
     runs += [((kind,), (f"{1002 + n}ms",), DEFAULT) for kind in faults_commands.KINDS for n in range(5 if kind.name == "command stop: scl" else 6)]
-    kept, faults.lines_that_ran = faults.lines_that_ran, lambda options, profile: {"fault": "lines", "good": True}
-    try:
+    with mock.patch.object(faults, "lines_that_ran", return_value={"fault": "lines", "good": True}):
         status, said = told_by(runs, attempt, words=[])
-    finally:
-        faults.lines_that_ran = kept
     kinds = len(faults_kinds.KINDS)
     assert status == 1 and said.endswith(f"{len(runs) - kinds + 1} passed, {kinds + 1} failed\n"), said[-300:]
     assert "faults: torn: 49 phases were judged of at least 50" in said and "faults: command stop: scl: 5 phases were" in said, said[-900:]

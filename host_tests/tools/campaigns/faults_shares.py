@@ -1,6 +1,7 @@
 """The fault campaign's long faults and the shares that are asked for; part of test_faults.py."""
 import argparse
 import pathlib
+from unittest import mock
 
 import faults
 import faults_judge
@@ -9,7 +10,7 @@ import faults_runs
 import page_faults
 import soak
 from faults_judged import ALL, result
-from system_support import FW, OUT, test
+from system_support import FW, OUT, refused, test
 from laws import DEFAULT  # noqa: E402
 
 
@@ -38,16 +39,9 @@ def a_long_fault_is_seen_to_its_end():
 
 def with_made_up(**functions):
     """What faults.share_* give when what they measure is made up."""
-    kept = {name: getattr(faults, name) for name in functions}
-
     def call(function, *words):
-        for name, value in functions.items():
-            setattr(faults, name, lambda *_, value=value: value)
-        try:
+        with mock.patch.multiple(faults, **{name: mock.Mock(return_value=value) for name, value in functions.items()}):
             return function(*words)
-        finally:
-            for name, value in kept.items():
-                setattr(faults, name, value)
     return call
 
 
@@ -69,24 +63,16 @@ def of_rows_999_in_a_thousand_have_roll_within_half_a_degree_and_1_percent_may_l
 
 @test
 def of_the_binarys_lines_95_percent_have_to_run():
-    options = argparse.Namespace(fw=FW)
-    kept, faults.coverage.campaign_lines = faults.coverage.campaign_lines, None
-    try:
-        for ran, good in ((1900, True), (1899, False)):
-            faults.coverage.campaign_lines = lambda *_, ran=ran: (ran, 2000, ["x.c:1"])
-            assert faults.lines_that_ran(options, set())["good"] is good, ran
-    finally:
-        faults.coverage.campaign_lines = kept
+    for ran, good in ((1900, True), (1899, False)):
+        with mock.patch.object(faults.coverage, "campaign_lines", return_value=(ran, 2000, ["x.c:1"])):
+            assert faults.lines_that_ran(argparse.Namespace(fw=FW), set())["good"] is good, ran
 
 
 @test
 def every_fault_that_nobody_can_see_has_a_share_but_what_is_never_large():
-    kept, faults.side_by_side = faults.side_by_side, lambda jobs, calls, take: list(map(take, calls))
-    try:
-        calls = []
+    calls = []
+    with mock.patch.object(faults, "side_by_side", lambda jobs, calls, take: list(map(take, calls))):
         faults.shares(argparse.Namespace(fw=FW, sample=300, jobs=1), calls)
-    finally:
-        faults.side_by_side = kept
     asked = [call[3].name for call in calls if call[1] is faults.share_flagged]
     assert asked == [name for name in ("flip 1", "flip 2", "noise", "double") for _ in range(2)], asked
     # a sample whose rest is of the one before: what it changes is noise, and one sample's motion
@@ -130,25 +116,16 @@ def a_full_disk_is_one_sentence_and_leaves_what_was_there():
     path = OUT / "whole.json"
     path.parent.mkdir(parents=True, exist_ok=True)
     faults_runs.write_whole(path, "before")
-    try:
-        faults_runs.write_whole(path, "half\udc80")  # what cannot be written breaks off
-        raise AssertionError("written")
-    except UnicodeEncodeError:
-        assert path.read_text(encoding="utf-8") == "before" and not path.with_name("whole.json.new").exists()
+    refused(UnicodeEncodeError, lambda: faults_runs.write_whole(path, "half\udc80"))  # what cannot be written breaks off
+    assert path.read_text(encoding="utf-8") == "before" and not path.with_name("whole.json.new").exists()
 
     def broken(command):
         pathlib.Path(command[command.index("--stats") + 1]).write_text('{ "rows": 1, ', encoding="ascii")
         return 0, ""
 
-    kept, faults_runs.called = faults_runs.called, broken
-    try:
-        faults_runs.simulate(FW, DEFAULT)
-        raise AssertionError("read")
-    except faults_runs.Fault as problem:
-        assert "breaks off: is the disk full?" in str(problem), problem
+    with mock.patch.object(faults_runs, "called", broken):
+        refused(faults_runs.Fault, lambda: faults_runs.simulate(FW, DEFAULT), "breaks off: is the disk full?")
         broken_off = faults_runs.attempt(FW, DEFAULT, (faults_kinds.OF["sda"],), ("1000ms",)).failures()
         assert len(broken_off) == 1 and "is the disk full?" in broken_off[0], broken_off
-    finally:
-        faults_runs.called = kept
     path.write_text('{ "rows": ', encoding="ascii")
     assert "breaks off" in soak.judged(0, 7, "", path, 1.8e6, [])[1][0]

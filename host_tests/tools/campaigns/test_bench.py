@@ -3,9 +3,10 @@ import copy
 import importlib.util
 import pathlib
 import sys
+from unittest import mock
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-from system_support import OUT, SIMRUN, STREAMS, image_with, run, run_all, test
+from system_support import OUT, SIMRUN, STREAMS, image_with, refused, run, run_all, test
 
 import images  # noqa: E402
 from laws import ROBUST  # noqa: E402
@@ -75,12 +76,7 @@ def printed_calls_are_read_and_summed_up():
 
 @test
 def a_run_cut_short_is_noticed():
-    try:
-        bench.parse(PRINTED.replace("=end", ""), "printed")
-    except bench.Fault as fault:
-        assert "did not run to its end" in str(fault)
-    else:
-        raise AssertionError("taken for complete")
+    refused(bench.Fault, lambda: bench.parse(PRINTED.replace("=end", ""), "printed"), "did not run to its end")
 
 
 @test
@@ -110,12 +106,7 @@ def what_the_code_declares_is_read():
     filters = bench.filters_of(flags)
     declared = bench.declared_of(flags, filters)
     assert set(declared) == {*filters, "sample_rest", "row"} and all(300 < cycles < 12000 for cycles in declared.values()), declared
-    try:
-        bench.declared_of(flags, [*filters, "later"])
-    except bench.Fault as fault:
-        assert "later: declares no worst case" in str(fault)
-    else:
-        raise AssertionError("a filter that declares nothing was not named")
+    refused(bench.Fault, lambda: bench.declared_of(flags, [*filters, "later"]), "later: declares no worst case")
 
 
 @test
@@ -193,12 +184,7 @@ def cycles_go_to_the_function_that_the_profile_names():
     assert sum(found.values()) == (50 + 25 + 90 + 20 + 30) / 5 and found["products"] == 90 / 5 and found["gains, x and P"] == 50 / 5, found
     for gone in ("mixed", "bend_lsb", "filter_fx_leading"):
         profile.write_text("\n".join(line for line in lines if f",{gone}" not in line) + "\n", encoding="ascii")
-        try:
-            bench.bench_where.parts(*bench.bench_where.read_profile(profile))
-        except bench.Fault as problem:
-            assert str(problem).startswith(f"{gone} is not in the profile"), problem
-        else:
-            raise AssertionError(f"a profile without {gone} was taken")
+        assert fault_of(lambda: bench.bench_where.parts(*bench.bench_where.read_profile(profile))).startswith(f"{gone} is not in the profile")
 
 
 def fault_of(function, *arguments):
@@ -228,17 +214,14 @@ def other_people_s_filters_are_skipped_and_counted_where_they_are_absent():
 def their_table_and_the_hash_are_left_alone_unless_all_of_them_were_measured():
     peers = {"one": {"label": "`one`", "words": "ours", "min": 700, "median": 1234, "worst": 1300, "flash": 5000, "ram": 90, "error": 1.716},
              "no filter": {"label": "no filter", "words": "read", "error": 0.5}}
-    kept = page_benchmarks.DOCUMENT
-    page_benchmarks.PAGE.document = page_benchmarks.DOCUMENT = OUT / "benchmarks.md"
-    try:
+    page = OUT / "benchmarks.md"
+    with mock.patch.object(page_benchmarks.PAGE, "document", page), mock.patch.object(page_benchmarks, "DOCUMENT", page):
         page_benchmarks.write(["| old |"], ["| old |"], ["| old |"], ["| old |"], "0123456789ab")
         for table, left, sources in ((None, 1, "0123456789ab"), (bench_peers.table(peers), 0, "ba9876543210")):
             page_benchmarks.write(["| new |"], ["| parts |"], ["| where |"], table, "ba9876543210")
             written = page_benchmarks.PAGE.held()
             assert written.count("| old |") == left and f"<!-- sources: {sources} -->" in written, written
             assert written.count("| new |") == written.count("| parts |") == written.count("| where |") == 1, written
-    finally:
-        page_benchmarks.PAGE.document = page_benchmarks.DOCUMENT = kept
     # the best error first; what was not timed has no cycles
     rows = ["| no filter | read |  |  |  |  |  | 0.50 |", "| `one` | ours | 700 | 1,234 | 1,300 | 5,000 | 90 | 1.72 |"]
     assert "\n".join(rows) in written, written

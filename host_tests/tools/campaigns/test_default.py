@@ -5,6 +5,7 @@ import math
 import pathlib
 import subprocess
 import sys
+from unittest import mock
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
@@ -288,17 +289,13 @@ def the_verdict_follows_from_the_streams():
 
 @test
 def without_recordings_the_page_is_left_alone():
-    kept = default_filter.measure, default_filter.JSON, default_filter.PAGE
     jobs = [job for job in streams.scenario_jobs() if job.path in (streams.SHIPPED / "bad-reads.csv", streams.SHIPPED / "tilt-fast.csv")]
-    default_filter.JSON, default_filter.PAGE = OUT / "rows.json", results.Results(OUT / "no-such-page.md", "None", "make none", "")
-    default_filter.measure = lambda: (jobs, default_filter.run_all(jobs), False)
+    page = results.Results(OUT / "no-such-page.md", "None", "make none", "")
     built()
-    try:
+    with mock.patch.multiple(default_filter, JSON=OUT / "rows.json", PAGE=page, measure=lambda: (jobs, default_filter.run_all(jobs), False)):
         assert default_filter.main() == 0 and not default_filter.PAGE.document.exists()
         rows = json.loads(default_filter.JSON.read_text(encoding="ascii"))
         assert rows[0]["default"] == score.NONE_PASSES and rows[0]["recordings"] is False and "no stream of class rest" in rows[0]["why"], rows[0]
-    finally:
-        default_filter.measure, default_filter.JSON, default_filter.PAGE = kept
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 import types
+from unittest import mock
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import laws  # noqa: E402
@@ -184,14 +185,11 @@ def the_page_holds_what_was_measured():
     rows = [made(experiment="clean", filter=ROBUST, metric="clean_efficiency", value=0.9765, ci_lo=0.97, ci_hi=0.98),
             made(value=float("inf"), experiment="step_clean_5_sigma", metric="reacq_p95"),
             made(metric="k_ef_steady", value=3.8e-14, experiment="printed"), made(published="30-40", verdict="refuted", reason="why")]
-    kept, papers_page.DOCUMENT = papers_page.DOCUMENT, pathlib.Path("build/papers/page.md")
-    begin, end = papers_page.markers("002")
-    try:
-        papers_page.DOCUMENT.write_text(f"before\n{begin}\nold\n{end}\nafter\n", encoding="utf-8")
+    page, (begin, end) = pathlib.Path("build/papers/page.md"), papers_page.markers("002")
+    with mock.patch.object(papers_page, "DOCUMENT", page):
+        page.write_text(f"before\n{begin}\nold\n{end}\nafter\n", encoding="utf-8")
         papers_page.write_page("002", rows, types.SimpleNamespace(runs=300, seed=7))
-        text = papers_page.DOCUMENT.read_text(encoding="utf-8")
-    finally:
-        papers_page.DOCUMENT = kept
+    text = page.read_text(encoding="utf-8")
     assert text.startswith(f"before\n{begin}\n300 runs per experiment (") and text.endswith(f"\n{end}\nafter\n") and "old" not in text, text
     for words in (f"| `{ROBUST}` | double | 0.977", "never", "| 30-40 | **refuted** | why |", "diverges", ", seed 7."):
         assert words in text, f"{words} is not in:\n{text}"
@@ -212,12 +210,9 @@ def progress_is_shown_on_a_terminal_only_and_cleared():
 def what_cannot_be_run_is_one_sentence():
     refused(papers.Fault, lambda: papers.chosen_of(["nothing", "none"], ["001"]),
             "no experiment's name contains nothing or none; there are altitude, ")
-    kept, papers.PYTHON = papers.PYTHON, pathlib.Path("build/none/python")
-    try:
+    with mock.patch.object(papers, "PYTHON", pathlib.Path("build/none/python")):
         refused(papers.Fault, lambda: rows_of("004", "nothing"),
                 "variable_structure: needs build/none/python, which is not there: sh tools/deps.sh papers")
-    finally:
-        papers.PYTHON = kept
     refused(papers.Fault, lambda: papers.output_of(["no-such-word"]), "no-such-word: not found")
     refused(papers.Fault, lambda: papers.output_of(["build/none/program"]), "build/none/program is not built")
 

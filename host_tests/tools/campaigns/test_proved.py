@@ -2,12 +2,13 @@
 import pathlib
 import shutil
 import sys
+from unittest import mock
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import proof  # noqa: E402
 import proved
 
-from system_support import OUT, Skip, run_all, test
+from system_support import OUT, Skip, refused, run_all, test
 
 WORK = OUT / "proved"
 
@@ -35,11 +36,8 @@ def what_stands_in_a_proof_counts_whole():
     kept, text = proved.digest(files, []), (here / "proof_rest.c").read_text(encoding="utf-8")
     assert "/*" in text
     original = pathlib.Path.read_text
-    try:
-        pathlib.Path.read_text = lambda path, encoding: original(path, encoding=encoding).replace("/*", "/* Options: none ", 1)
+    with mock.patch.object(pathlib.Path, "read_text", lambda path, encoding: original(path, encoding=encoding).replace("/*", "/* Options: none ", 1)):
         assert proved.digest(files, []) != kept
-    finally:
-        pathlib.Path.read_text = original
 
 
 @test
@@ -52,12 +50,8 @@ def how_a_proof_is_asked_and_judged_counts_and_so_does_what_it_takes_by_contract
     for entry in (("proof_rest.c", [], []), ("proof_rest.c", ["filter_kalman_step"], ["-eva-slevel", "1"])):
         other = proof.inputs_of(entries | {"a": entry})
         assert other["proof_rest.c"] != plain["proof_rest.c"] and other["proof_fx.c"] == plain["proof_fx.c"], entry
-    kept = proof.PROVED
-    try:
-        proof.PROVED = kept | {"Unknown"}
+    with mock.patch.object(proof, "PROVED", proof.PROVED | {"Unknown"}):
         assert proof.inputs_of(entries)["proof_rest.c"] != plain["proof_rest.c"]
-    finally:
-        proof.PROVED = kept
 
 
 @test
@@ -65,41 +59,27 @@ def an_include_from_elsewhere_is_refused():
     WORK.mkdir(parents=True, exist_ok=True)
     path = WORK / "proof_lost.c"
     path.write_text('#include "fx.h"\n  #  include "of_no_folder.h"\n', encoding="utf-8")
-    try:
-        proof.included(path, set())
-    except SystemExit as end:
-        assert end.code == 1
-    else:
-        raise AssertionError("a header that no folder of the proofs has was left out of the hash")
+    refused(SystemExit, lambda: proof.included(path, set()), "1")
 
 
 @test
 def lines_come_back_as_written():
-    kept = proved.LEDGER
-    try:
-        proved.LEDGER = WORK / "proved.json"
+    with mock.patch.object(proved, "LEDGER", WORK / "proved.json"):
         rows = {"proof_b.c": ("00ff", {"f", "g"}, {("f", "a + b")}), "proof_a.c": ("11ee", {"h"}, set())}
         proved.write(rows)
         assert proved.read() == rows
         assert len(proved.LEDGER.read_text(encoding="utf-8").splitlines()) == 4
-    finally:
-        proved.LEDGER = kept
 
 
 @test
 def every_proof_has_its_line_and_a_change_takes_it_away():
     inputs = {"proof_rest.c": "1", "proof_fx.c": "other"}
-    kept = proved.read
-    try:
-        proved.read = lambda: {"proof_rest.c": ("1", {"f"}, set()), "proof_fx.c": ("2", {"g"}, set()), "proof_gone.c": ("3", set(), set())}
-        proof.os.environ["CHANGED"] = "yes"
+    rows = {"proof_rest.c": ("1", {"f"}, set()), "proof_fx.c": ("2", {"g"}, set()), "proof_gone.c": ("3", set(), set())}
+    with mock.patch.object(proved, "read", lambda: rows), mock.patch.dict(proof.os.environ, {"CHANGED": "yes"}):
         assert list(proof.unchanged(inputs, [])) == ["proof_rest.c"]
         assert not proof.unchanged(inputs, ["rest"])
         proof.os.environ["CHANGED"] = ""
         assert not proof.unchanged(inputs, [])
-    finally:
-        proved.read = kept
-        proof.os.environ.pop("CHANGED", None)
     named = {file for file, _, _ in proof.load_entries().values()}
     assert set(proved.read()) == named, set(proved.read()) ^ named
 

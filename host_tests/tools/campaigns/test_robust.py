@@ -3,8 +3,8 @@ described."""
 import copy
 import pathlib
 import random
-import re
 import sys
+from unittest import mock
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import PLAIN, ROBUST, names as laws_names  # noqa: E402
@@ -59,11 +59,8 @@ def the_pictures_show_this_run():
     other.data[1][ROBUST].angles_cdeg[2100, 0] += 1
     found = pictures.faults_of([other, *shown[1:-1]], "make robust")
     assert len(found) == 2 and str(other.path) in found[0] and f"{shown[-1].path}: not drawn by make robust" == found[1], found
-    kept, pictures.__file__ = pictures.__file__, __file__
-    try:
+    with mock.patch.object(pictures, "__file__", __file__):
         assert all(picture.stale() for picture in shown)
-    finally:
-        pictures.__file__ = kept
 
 
 # --- scores -----------------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ import io
 import pathlib
 import re
 import sys
+from unittest import mock
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import PLAIN, ROBUST  # noqa: E402
@@ -14,7 +15,7 @@ import proof
 import recordings
 import results
 
-from system_support import run_all, test
+from system_support import refused, run_all, test
 
 OUT = pathlib.Path("build/pages-test")
 
@@ -28,12 +29,7 @@ def no_page_has_a_title_twice():
             results.no_title_twice(name, part.splitlines())
     # the twin: a doubled table is named
     lines = ["### Roll", "", "| a | b |", "|---|---|", "| x | 1 |", "", "### Roll", "", "| a | b |", "|---|---|", "| x | 2 |"]
-    try:
-        results.no_title_twice("docs/any.md", lines)
-    except results.Fault as fault:
-        assert str(fault) == "docs/any.md: the title 'Roll' occurs 2 times", fault
-    else:
-        raise AssertionError("a title twice was taken")
+    refused(results.Fault, lambda: results.no_title_twice("docs/any.md", lines), "docs/any.md: the title 'Roll' occurs 2 times")
 
 
 def recorded(status):
@@ -48,16 +44,13 @@ def recorded(status):
     program.write_text("#!/bin/sh\ncat <<'END'\n" + "\n".join(lines) + f"\nEND\nexit {status}\n", encoding="ascii")
     program.chmod(0o755)
     page.unlink(missing_ok=True)
-    kept = recordings.PAGE, recordings.CSV, recordings.PROGRAM, results.KEPT
-    recordings.PAGE, recordings.CSV = results.Results(page, "Of the test", "make recordings", "What."), OUT / "rows.csv"
-    recordings.PROGRAM, results.KEPT = str(program), OUT / f"kept-{status}"
+    made = results.Results(page, "Of the test", "make recordings", "What.")
     try:
-        with contextlib.redirect_stderr(text), contextlib.redirect_stdout(text):
+        with mock.patch.multiple(recordings, PAGE=made, CSV=OUT / "rows.csv", PROGRAM=str(program)), \
+                mock.patch.object(results, "KEPT", OUT / f"kept-{status}"), contextlib.redirect_stderr(text), contextlib.redirect_stdout(text):
             status = recordings.main()
     except (SystemExit, results.Fault) as end:
         status = getattr(end, "code", str(end))
-    finally:
-        recordings.PAGE, recordings.CSV, recordings.PROGRAM, results.KEPT = kept
     return status, text.getvalue(), page.read_text(encoding="utf-8") if page.is_file() else None
 
 
@@ -115,12 +108,7 @@ def the_page_of_navigation_holds_what_its_programs_say():
                  "| states that differ from the PC | 0 of 500 | 0 of 500 |"):
         assert line in lines, (line, lines)
     for cut in (CHIP.rpartition("load")[0], CHIP.replace("call gps", "gps call:")):
-        try:
-            page_navigation.chip_rows(cut, 12)
-        except results.Fault as fault:
-            assert str(fault) == "nav_chip_12: it did not run to its end", fault
-        else:
-            raise AssertionError("a run that was cut short was taken")
+        refused(results.Fault, lambda: page_navigation.chip_rows(cut, 12), "nav_chip_12: it did not run to its end")
 
 
 @test
@@ -128,19 +116,12 @@ def a_line_of_deliberate_that_stands_twice_is_refused():
     lines = (proof.HERE / "deliberate.txt").read_text(encoding="utf-8").splitlines()
     assert len(proof.deliberate()) == len(lines) - 1 >= 50
     OUT.mkdir(parents=True, exist_ok=True)
-    kept, text = proof.HERE, io.StringIO()
-    proof.HERE = OUT
+    text = io.StringIO()
     (OUT / "deliberate.txt").write_text("\n".join([*lines, lines[1].split("|")[0] + "|" + lines[1].split("|")[1] + "| otherwise"]) + "\n")
-    try:
-        with contextlib.redirect_stderr(text):
-            proof.deliberate()
-    except SystemExit:
-        first = " | ".join(part.strip() for part in lines[1].split("|")[:2])
-        assert f"deliberate.txt: {first} stands twice: strike one" in text.getvalue(), text.getvalue()
-    else:
-        raise AssertionError("a line twice was taken")
-    finally:
-        proof.HERE = kept
+    with mock.patch.object(proof, "HERE", OUT), contextlib.redirect_stderr(text):
+        refused(SystemExit, proof.deliberate)
+    first = " | ".join(part.strip() for part in lines[1].split("|")[:2])
+    assert f"deliberate.txt: {first} stands twice: strike one" in text.getvalue(), text.getvalue()
 
 
 if __name__ == "__main__":

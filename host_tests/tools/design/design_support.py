@@ -1,13 +1,13 @@
 """What the tests of tools/design share: the command, brute force, and the compiled library."""
-import contextlib
 import ctypes
 import functools
 import importlib
-import io
 import json
 import pathlib
 import subprocess
 import sys
+
+from tilt_case import printed
 
 OUT = pathlib.Path("build/design_tests") / pathlib.Path(sys.argv[0]).stem  # programs that run at the same time do not write the same files
 BASE = ["--rate", "100", "--sigma", "2", "--no-pictures"]
@@ -16,13 +16,7 @@ BASE = ["--rate", "100", "--sigma", "2", "--no-pictures"]
 def said(*arguments):
     """(status, standard output, standard error) of the command, in this process."""
     command = importlib.import_module("design.command")  # needs scipy, whose absence the tests tell themselves
-    out, error = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
-        try:
-            status = command.main([str(a) for a in arguments])
-        except SystemExit as stopped:
-            status = stopped.code
-    return status, out.getvalue(), error.getvalue()
+    return printed(command.main, arguments)
 
 
 def answer(*arguments):

@@ -15,7 +15,7 @@ import results
 import default_score as score
 import link_image
 import system_support
-from system_support import run_all, test
+from system_support import refused, run_all, test
 
 OUT = pathlib.Path("build/images-test")
 IMAGES = pathlib.Path("mk/images.mk").read_text(encoding="utf-8")
@@ -122,7 +122,6 @@ def what_cannot_be_chosen_is_refused_in_one_sentence():
 def the_image_with_a_filter_holds_it():
     """make's and the tests' own: the chosen image where it does, else the first set's that does."""
     show = f"show: ; @$(foreach f,{' '.join(EVERY)},echo '$(f) $(call image_with,$(f))';)"
-    kept = system_support.SET_IMAGES
     for choice in (*SETS, f"{ROBUST} {PLAIN}", SLOWEST):
         holds = {f"{OUT}/firmware.elf": SETS.get(choice, choice.split()), **{f"{OUT}/{name}/firmware.elf": names for name, names in SETS.items()}}
         wanted = {name: next(image for image, names in holds.items() if name in names) for name in EVERY}
@@ -130,17 +129,9 @@ def the_image_with_a_filter_holds_it():
         assert done.returncode == 0 and dict(line.split() for line in done.stdout.splitlines()) == wanted, (choice, done.stdout, done.stderr)
         for image, names in holds.items():
             subprocess.run(["sh", "mk/scripts/filters_txt.sh", str(pathlib.Path(image).with_name("filters.txt")), *names], check=True, timeout=600)
-        system_support.SET_IMAGES = list(holds)
-        try:
+        with mock.patch.object(system_support, "SET_IMAGES", list(holds)):
             assert {name: system_support.image_with(name) for name in EVERY} == wanted, choice
-            try:
-                system_support.image_with("kff")
-            except LookupError as problem:
-                assert "no image holds the filter kff" in str(problem)
-            else:
-                raise AssertionError("an image for kff")
-        finally:
-            system_support.SET_IMAGES = kept
+            refused(LookupError, lambda: system_support.image_with("kff"), "no image holds the filter kff")
     done = make("--eval", "show: ; @echo $(call image_with,kff)", "show")
     assert done.returncode != 0 and f"no image holds a filter kff; filters: {DEFAULT}" in done.stderr, done.stderr
 

@@ -2,7 +2,6 @@
 the simulator, behind a cable that can be pulled out, and hands that do what the program asks for."""
 import collections
 import contextlib
-import io
 import json
 import os
 import pathlib
@@ -10,7 +9,6 @@ import pty
 import re
 import select
 import subprocess
-import tempfile
 import threading
 import time
 import tty
@@ -19,7 +17,7 @@ from unittest import mock
 
 from fake_board import until
 from laws import DEFAULT
-from tilt import cli
+from tilt_case import InFolder, run_tilt
 from tilt.errors import TiltError
 from tilt.port import Port
 from tilt.realboard.bench import Bench, Failed, Seen, seen_of
@@ -176,11 +174,9 @@ class JudgeCase(unittest.TestCase):
         return bench.numbers
 
 
-class CommandCase(unittest.TestCase):
+class CommandCase(InFolder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.path = self.folder / "board.jsonl"
 
     def record(self, resumed=False):
@@ -194,11 +190,7 @@ class CommandCase(unittest.TestCase):
         return [json.loads(line) for line in self.path.read_text().splitlines()]
 
     def tilt(self, *words):
-        """(status, stdout, stderr)"""
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            status = cli.main(["board", *map(str, words)])
-        return status, out.getvalue(), err.getvalue()
+        return run_tilt("board", *words)
 
 
 def check(key="identity", judge=lambda bench: bench.measured(seconds=1.5), alone=False):

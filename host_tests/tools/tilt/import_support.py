@@ -1,13 +1,8 @@
 """What the tests of `tilt import` share: integers that are known beforehand, and a run of the command on a file made from them."""
-import contextlib
-import io
-import pathlib
 import sys
-import tempfile
-import unittest
 
 sys.dont_write_bytecode = True
-from tilt import cli  # noqa: E402
+from tilt_case import InFolder, run_tilt  # noqa: E402
 
 ROWS = 60
 G = 9.80665
@@ -20,27 +15,20 @@ def every(period_us, rows=ROWS):
     return [i * period_us for i in range(rows)]
 
 
-class Case(unittest.TestCase):
+class Case(InFolder):
     def setUp(self):
-        place = tempfile.TemporaryDirectory()
-        self.addCleanup(place.cleanup)
-        self.place = pathlib.Path(place.name)
-        self.out = self.place / "out.csv"
+        super().setUp()
+        self.out = self.folder / "out.csv"
 
     def file(self, content, name="in.txt"):
-        path = self.place / name
+        path = self.folder / name
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
         return path
 
     def run_tilt(self, *words):
         """(status, stderr) of `tilt import WORDS`."""
-        said = io.StringIO()
-        with contextlib.redirect_stderr(said):
-            try:
-                status = cli.main(["import", *map(str, words)])
-            except SystemExit as stop:
-                status = stop.code
-        return status, said.getvalue()
+        status, _, said = run_tilt("import", *words)
+        return status, said
 
     def rows(self, path=None):
         """(header, [numbers]) of the stream written."""
@@ -70,4 +58,4 @@ class Case(unittest.TestCase):
         status, said = self.run_tilt(path, "-o", self.out, *words)
         where = f"{path}:{line}: " if line else f"{path}: "
         self.assertEqual((status, said), (2, f"tilt import: {where}{reason}\n"))
-        self.assertEqual(sorted(found.name for found in self.place.iterdir()), [name])
+        self.assertEqual(sorted(found.name for found in self.folder.iterdir()), [name])

@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
-"""The judges of `tilt board` for which the owner pulls a wire, presses reset or cuts the supply, with lines by the script and a clock of
-their own: what passes, what fails and why, what never comes. Run from the repository root with
-build/venv/bin/python."""
+"""The judges of `tilt board` for which the owner pulls a wire, presses reset or cuts the supply, with lines by the script and a clock of their
+own: what passes, what fails and why, what never comes."""
 import pathlib
 import sys
-import unittest
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""The judges of `tilt board` for which nobody touches a wire, with lines by the script and a clock of their own: what passes, what fails
-and why, what never comes. Run from the repository root with
-build/venv/bin/python."""
+"""The judges of `tilt board` for which nobody touches a wire, with lines by the script and a clock of their own: what passes, what fails and why,
+what never comes."""
 import pathlib
 import sys
 import unittest

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""docs/board.md holds the table of `tilt board` as the code has it, and its numbers. Run from the repository root with build/venv/bin/python."""
+"""docs/board.md holds the table of `tilt board` as the code has it, and its numbers."""
 import contextlib
 import io
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The twenty checks of `tilt board` with the firmware itself in the simulator: hands pull the cable, and begin a fault of simrun for each deed. What
-no simulator has: nobody looks at the LED, no baud rate is ever wrong. Run from the repository root with build/venv/bin/python."""
+"""The twenty checks of `tilt board` with the firmware itself in the simulator: hands pull the cable, and begin a fault of simrun for each deed.
+What no simulator has: nobody looks at the LED, no baud rate is ever wrong."""
 import contextlib
 import io
 import json
@@ -8,7 +8,6 @@ import os
 import pathlib
 import random
 import sys
-import tempfile
 import time
 import unittest
 from unittest import mock
@@ -16,6 +15,7 @@ from unittest import mock
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from board_support import FIRMWARE, SIMRUN, Cable, Hands, Simulated, faults  # noqa: E402
+from tilt_case import InFolder  # noqa: E402
 from tilt import cli  # noqa: E402
 from tilt.realboard import judges_alone, judges_starts, judges_wires, owner, watch  # noqa: E402
 from tilt.realboard.checks import CHECKS  # noqa: E402
@@ -39,11 +39,9 @@ def stream(path, parts):
 
 
 @unittest.skipUnless(os.path.exists(SIMRUN) and os.path.exists(FIRMWARE), "no simulator or firmware: make system_images")
-class Played(unittest.TestCase):
+class Played(InFolder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.record = self.folder / "board.jsonl"
 
     @contextlib.contextmanager

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""`tilt board` and what it meets: ports, boards, options and terminals that are none; a person at a real terminal; Ctrl-C and a lost port. Run from
-the repository root with build/venv/bin/python."""
+"""`tilt board` and what it meets: ports, boards, options and terminals that are none; a person at a real terminal; Ctrl-C and a lost port."""
 import contextlib
 import io
 import os

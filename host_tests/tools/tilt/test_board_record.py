@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
-"""`tilt board` around its checks: the record, whole, cut short or something else; the owner's keys. Run from the
-repository root with build/venv/bin/python."""
+"""`tilt board` around its checks: the record, whole, cut short or something else; the owner's keys."""
 import json
 import pathlib
 import sys
-import unittest
 from unittest import mock
 
 sys.dont_write_bytecode = True

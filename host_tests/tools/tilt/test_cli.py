@@ -1,8 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of the command `tilt` itself: what is listed, what a wrong word or file says, exit statuses. Run from the repository root with
-build/venv/bin/python."""
-import contextlib
-import io
+"""Tests of the command `tilt` itself: what is listed, what a wrong word or file says, exit statuses."""
 import pathlib
 import subprocess
 import sys
@@ -12,20 +9,10 @@ from unittest import mock
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+from tilt_case import run_tilt as run  # noqa: E402
 from tilt import cli, errors  # noqa: E402
 
 INSTALLED = pathlib.Path("build/venv/bin/tilt")
-
-
-def run(*words):
-    """(status, stdout, stderr)"""
-    out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        try:
-            status = cli.main(list(words))
-        except SystemExit as stop:
-            status = stop.code
-    return status, out.getvalue(), err.getvalue()
 
 
 def job(raises=None, status=None):

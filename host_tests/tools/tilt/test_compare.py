@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
 """Tests of `tilt compare`: its errors against ones computed here, lags that were put in, choices whose reason is known, and what it says when
-filters cannot be told apart. Run from the repository root with build/venv/bin/python."""
-import contextlib
-import io
+filters cannot be told apart."""
 import json
 import math
 import pathlib
@@ -17,17 +15,15 @@ sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import laws  # noqa: E402
 from laws import DEFAULT, LIGHT, LONG, PLAIN, ROBUST  # noqa: E402
-from tilt import angles, cli, judge, native, stream  # noqa: E402
+from tilt_case import run_tilt  # noqa: E402
+from tilt import angles, judge, native, stream  # noqa: E402
 from tilt.commands import compare  # noqa: E402
 
 STREAMS = pathlib.Path("sim/streams")
 
 
 def run(*words):
-    out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        status = cli.main(["compare", *map(str, words)])
-    return status, out.getvalue(), err.getvalue()
+    return run_tilt("compare", *words)
 
 
 def answer_of(stem, names=f"{DEFAULT},{PLAIN},{ROBUST},{LIGHT}", truth=True):

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of flights: their file, their simulation against the laws of motion, the frames of the navigation image, the judge. Run from the repository
-root with build/venv/bin/python."""
+"""Tests of flights: their file, their simulation against the laws of motion, the frames of the navigation image, the judge."""
 import contextlib
 import io
 import pathlib
@@ -12,6 +11,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+from tilt_case import run_tilt  # noqa: E402
 from tilt import cli, numbers  # noqa: E402
 from tilt.errors import TiltError  # noqa: E402
 from tilt.navigation import exchange, flight, frames, judge, rotation, settings  # noqa: E402
@@ -30,10 +30,8 @@ def refused(text):
 
 
 def run(*words):
-    said = io.StringIO()
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-        status = cli.main(list(map(str, words)))
-    return status, said.getvalue()
+    status, out, err = run_tilt(*words)
+    return status, out + err
 
 
 class Rotation(unittest.TestCase):

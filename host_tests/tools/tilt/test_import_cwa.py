@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""`tilt import` of CWA files made here, field by field from the maker's description of the format: readings, clock, refusals. Run from the
-repository root with build/venv/bin/python."""
+"""`tilt import` of CWA files made here, field by field from the maker's description of the format: readings, clock, refusals."""
 import pathlib
 import struct
 import sys

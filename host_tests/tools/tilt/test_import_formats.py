@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Each format that people's recordings have: a sample made from known integers gives these integers. Run from the repository root with
-build/venv/bin/python."""
+"""Each format that people's recordings have: a sample made from known integers gives these integers."""
 import json
 import math
 import pathlib
@@ -93,7 +92,7 @@ class Plain(Case):
         for number in (1, 2, 10):
             part = LSB[20 * (0, 1, 2)[(1, 2, 10).index(number)]:][:20]
             self.file("".join(f"{x}, {y}, {z}\n" for x, y, z in part), f"c{number}.csv")
-        paths = [self.place / f"c{number}.csv" for number in (10, 1, 2)]
+        paths = [self.folder / f"c{number}.csv" for number in (10, 1, 2)]
         status, said = self.run_tilt(*paths, "--join", "--rate", 1600, "-o", self.out)
         self.assertEqual(status, 0, said)
         self.assertEqual(self.rows()[1], [(i * 625, *LSB[i]) for i in range(ROWS)])

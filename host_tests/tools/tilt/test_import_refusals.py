@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""What `tilt import` refuses, each with its reason and place and without writing anything. Run from the repository root with
-build/venv/bin/python."""
+"""What `tilt import` refuses, each with its reason and place and without writing anything."""
 import bz2
 import gzip
 import io
@@ -51,9 +50,9 @@ class Files(Case):
         self.refused("1,2,3\n".encode("utf-16")[:-1], "begins as UTF-16, but is not valid at byte 12")
 
     def test_not_there(self):
-        missing = self.place / "missing.csv"
+        missing = self.folder / "missing.csv"
         self.assertEqual(self.run_tilt(missing), (2, f"tilt import: {missing}: No such file or directory\n"))
-        self.assertEqual(self.run_tilt(self.place), (2, f"tilt import: {self.place}: Is a directory\n"))
+        self.assertEqual(self.run_tilt(self.folder), (2, f"tilt import: {self.folder}: Is a directory\n"))
 
     def test_spectra(self):
         for head, words in (("freq,psd_x,psd_y,psd_z,psd_xyz,mzv\n", "freq, psd_x, psd_y, psd_z"), ("freq,x,y,z\n", "freq, x, y, z")):
@@ -173,7 +172,7 @@ class Options(Case):
 
     def test_no_input_is_replaced(self):
         path = self.file(TABLE, "a.stream.csv")
-        for words in ([path, "-o", path], [path, "-o", self.place / "." / "a.stream.csv"], [self.file(TABLE, "a.csv"), path]):
+        for words in ([path, "-o", path], [path, "-o", self.folder / "." / "a.stream.csv"], [self.file(TABLE, "a.csv"), path]):
             status, said = self.run_tilt(*words)
             self.assertEqual(status, 2)
             self.assertIn("the stream would replace", said)
@@ -196,10 +195,10 @@ class Options(Case):
         status, said = self.run_tilt(bad, good)
         self.assertEqual(status, 2)
         self.assertIn("1 of 2 files not imported", said)
-        self.assertEqual(len(self.rows(self.place / "good.stream.csv")[1]), ROWS)
+        self.assertEqual(len(self.rows(self.folder / "good.stream.csv")[1]), ROWS)
 
     def test_an_output_that_cannot_be_written(self):
-        out = self.place / "nowhere" / "a.csv"
+        out = self.folder / "nowhere" / "a.csv"
         self.assertEqual(self.run_tilt(self.file(TABLE), "-o", out), (2, f"tilt import: {out}: cannot write it: No such file or directory\n"))
 
     def test_files_of_different_forms_are_not_joined(self):

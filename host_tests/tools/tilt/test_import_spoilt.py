@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Recordings of every form, spoilt at random: `tilt import` gives a stream that reads as one, or one line with the reason; nothing else. Run
-from the repository root with build/venv/bin/python."""
+"""Recordings of every form, spoilt at random: `tilt import` gives a stream that reads as one, or one line with the reason; nothing else."""
 import json
 import pathlib
 import random

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Our own streams and what the firmware sends come through `tilt import` as they are: the shipped streams, the firmware in the simulator,
-and real recordings (RECORDINGS=folder, else ../shared/streams). Run from the repository root with build/venv/bin/python."""
+"""Our own streams and what the firmware sends come through `tilt import` as they are: the shipped streams, the firmware in the simulator, and real
+recordings (RECORDINGS=folder, else ../shared/streams)."""
 import csv
 import os
 import pathlib
@@ -120,7 +120,7 @@ class Quick(Case):
 class Firmware(Case):
     def simulated(self, stream):
         """(what the firmware sent, served readings) at 100 Hz."""
-        out, served = self.place / "fw.csv", self.place / "served.csv"
+        out, served = self.folder / "fw.csv", self.folder / "served.csv"
         subprocess.run([SIMRUN, "--fw", FIRMWARE, "--in", stream, "--out", out, "--served", served], check=True, capture_output=True, timeout=600)
         return out, stream_rows(served)
 
@@ -129,13 +129,13 @@ class Firmware(Case):
         if not (SIMRUN.exists() and FIRMWARE.exists()):
             self.skipTest("no build/sim/simrun and build/uno/firmware.elf (make sim)")
         lsb = LSB * 5
-        first = self.place / "first.csv"
+        first = self.folder / "first.csv"
         content = "time, x, y, z\n" + "".join(f"{i * 0.01:.5f}, {x / 256:.5f}, {y / 256:.5f}, {z / 256:.5f}\n" for i, (x, y, z) in enumerate(lsb))
         self.assertEqual(self.run_tilt(self.file(content), "-o", first)[0], 0)
         self.assertEqual(stream_rows(first), [(10000 * i, *row) for i, row in enumerate(lsb)])
         sent, served = self.simulated(first)
         self.assertEqual([row[1:] for row in served[:len(lsb)]], lsb)
-        second, third = self.place / "second.csv", self.place / "third.csv"
+        second, third = self.folder / "second.csv", self.folder / "third.csv"
         self.assertEqual(self.run_tilt(sent, "-o", second)[0], 0)
         rows = self.rows(second)[1]
         self.assertEqual(rows, stream_rows(sent, "flags"))

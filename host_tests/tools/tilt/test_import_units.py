@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""How `tilt import` finds the unit: each scale of the public drivers from each printing, what cannot be told, what is no ADXL345's. Run from
-the repository root with build/venv/bin/python."""
+"""How `tilt import` finds the unit: each scale of the public drivers from each printing, what cannot be told, what is no ADXL345's."""
 import pathlib
 import random
 import sys

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
-"""Tests of `tilt nav` at a serial port: a pseudo terminal behind which the navigation image runs natively (build/host/nav_replay_12, made here when
-it is missing). Run from the repository root with build/venv/bin/python."""
+"""Tests of `tilt nav` at a serial port: a pseudo terminal behind which the navigation image runs natively (build/host/nav_replay_12, made here
+when it is missing)."""
 import contextlib
 import dataclasses
-import io
 import os
 import pathlib
 import pty
@@ -19,7 +18,7 @@ from unittest import mock
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-from tilt import cli  # noqa: E402
+from tilt_case import run_tilt  # noqa: E402
 from tilt.errors import TiltError  # noqa: E402
 from tilt.navigation import boards, exchange, flight, frames  # noqa: E402
 
@@ -131,11 +130,9 @@ class Port(unittest.TestCase):
                 boards.at_port(own.name, sent(), 12, fast=True)
 
     def test_a_port_that_is_not_there_is_told(self):
-        said = io.StringIO()
-        with contextlib.redirect_stderr(said), contextlib.redirect_stdout(said):
-            status = cli.main(["nav", "--board", "/dev/no-such-port"])
+        status, _, said = run_tilt("nav", "--board", "/dev/no-such-port")
         self.assertEqual(status, 2)
-        self.assertIn("/dev/no-such-port", said.getvalue())
+        self.assertIn("/dev/no-such-port", said)
 
 
 class Losses(unittest.TestCase):
@@ -185,13 +182,10 @@ class Command(unittest.TestCase):
             number = next(n for n, line in enumerate(lines) if line.startswith("field,5000000"))
             lines[number] = "field,5000000,0,0,0"
             (place / "flight.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-            said = io.StringIO()
-            with contextlib.redirect_stdout(said):
-                status = cli.main(["nav", str(place / "flight.csv"), "--board", "pc", "-o", str(place / "states.csv"),
-                                   "--plot", str(place / "f.png")])
-            self.assertEqual(status, 0, said.getvalue())
-            self.assertIn(f"flight.csv:{number + 1}: field: no length", said.getvalue())
-            self.assertIn("board's counts: no length 1", said.getvalue())
+            status, said, _ = run_tilt("nav", place / "flight.csv", "--board", "pc", "-o", place / "states.csv", "--plot", place / "f.png")
+            self.assertEqual(status, 0, said)
+            self.assertIn(f"flight.csv:{number + 1}: field: no length", said)
+            self.assertIn("board's counts: no length 1", said)
             rows = (place / "states.csv").read_text(encoding="utf-8").splitlines()
             self.assertEqual(len(rows), 1 + 120)
             self.assertEqual((place / "f.png").read_bytes()[:4], b"\x89PNG")
@@ -205,19 +199,16 @@ class Command(unittest.TestCase):
             made(*targets)
         moved = mock.Mock(wraps=time, perf_counter=lambda: time.perf_counter() + clock["forward_s"])
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(boards, "made", slowly), mock.patch.object(boards, "time", moved):
-            path, said = pathlib.Path(folder) / "flight.csv", io.StringIO()
+            path = pathlib.Path(folder) / "flight.csv"
             flight.write(path, flight.simulated(flight.Wish(seconds=5.0)))
-            with contextlib.redirect_stdout(said):
-                cli.main(["nav", str(path), "--board", "pc", "--plot", str(path.with_suffix(".png"))])
+            said = run_tilt("nav", path, "--board", "pc", "--plot", path.with_suffix(".png"))[1]
         self.assertGreaterEqual(clock["forward_s"], hour_s)
-        self.assertLess(float(re.search(r"s of flight in ([\d.]+) s", said.getvalue())[1]), hour_s)
+        self.assertLess(float(re.search(r"s of flight in ([\d.]+) s", said)[1]), hour_s)
 
     def test_a_start_that_the_filter_refuses_is_said(self):
-        said = io.StringIO()
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            status = cli.main(["nav", "--board", "pc", "--set", "gravity_mps2=0"])
+        status, _, said = run_tilt("nav", "--board", "pc", "--set", "gravity_mps2=0")
         self.assertEqual(status, 2)
-        self.assertIn("start refused", said.getvalue())
+        self.assertIn("start refused", said)
 
 
 if __name__ == "__main__":

@@ -1,16 +1,12 @@
 #!/usr/bin/env python3
-"""Tests of `tilt plot`: what thinning keeps, the spectrum of known signals, pictures and page of made recordings. Run from the repository root
-with build/venv/bin/python."""
+"""Tests of `tilt plot`: what thinning keeps, the spectrum of known signals, pictures and page of made recordings."""
 import base64
-import contextlib
-import io
 import json
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
 import xml.etree.ElementTree
 from unittest import mock
@@ -20,7 +16,8 @@ import numpy as np
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import LONG, PLAIN  # noqa: E402
-from tilt import cli, picture, pictured, plot_page, spectrum, stream, thin  # noqa: E402
+from tilt_case import InFolder, run_tilt  # noqa: E402
+from tilt import picture, pictured, plot_page, spectrum, stream, thin  # noqa: E402
 
 SEED = 20261122
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -31,12 +28,7 @@ def noise(rows, columns=1):
     return np.random.default_rng(SEED).normal(0.0, 1.0, (rows, columns))
 
 
-class Case(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class Case(InFolder):
     def recording(self, rows=2000, gated=(), name="run.csv", filtered=True, truth=False, step_us=10_000, flags=None):
         """A run at 20 degrees of roll with white noise of 2 LSB; the gated rows read 90 degrees."""
         lsb = np.round(np.array([0.0, 87.6, 240.6]) + 2.0 * noise(rows, 3)).astype(int)
@@ -51,11 +43,7 @@ class Case(unittest.TestCase):
         return path
 
     def tilt(self, *words):
-        """(status, stdout, stderr)"""
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            status = cli.main(["plot", *map(str, words)])
-        return status, out.getvalue(), err.getvalue()
+        return run_tilt("plot", *words)
 
 
 class Thinned(Case):

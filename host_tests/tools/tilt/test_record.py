@@ -1,13 +1,11 @@
 #!/usr/bin/env python3
-"""Tests of `tilt record`: what is written and what is counted, on made lines and on a board on a pseudo terminal. Run from the repository root
-with build/venv/bin/python."""
+"""Tests of `tilt record`: what is written and what is counted, on made lines and on a board on a pseudo terminal."""
 import contextlib
 import io
 import os
 import pathlib
 import signal
 import sys
-import tempfile
 import termios
 import unittest
 from unittest import mock
@@ -16,6 +14,7 @@ sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import ROBUST  # noqa: E402
 from fake_board import BANNER, HEADER, FakeBoard, row, rows, until  # noqa: E402
+from tilt_case import InFolder  # noqa: E402
 from tilt import cli, protocol, stream  # noqa: E402
 from tilt.commands import record  # noqa: E402
 from tilt.gaps import Gaps  # noqa: E402
@@ -37,11 +36,9 @@ def lines_that(text, word):
     return [number for number, line in enumerate(text.splitlines(), 1) if word in line]
 
 
-class Case(unittest.TestCase):
+class Case(InFolder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.file = self.folder / "out.csv"
 
     def stream_of(self, text):

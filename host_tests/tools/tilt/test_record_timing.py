@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Tests of when `tilt record` does what: commands and a changing baud rate, --seconds, silence; and of the firmware itself on the simulator's
-pseudo terminal. Run from the repository root with build/venv/bin/python."""
+pseudo terminal."""
 import contextlib
 import io
 import os

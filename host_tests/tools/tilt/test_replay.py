@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Tests of `tilt replay`: its rows are those of the firmware, which is run natively (build/host/native_replay, made here when it is missing)
-and, where it is built, in the simulator. Run from the repository root with build/venv/bin/python."""
+"""Tests of `tilt replay`: its rows are those of the firmware, which is run natively (build/host/native_replay, made here when it is missing) and,
+where it is built, in the simulator."""
 import contextlib
 import io
 import os
@@ -18,6 +18,7 @@ sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import DEFAULT, LIGHT, PLAIN, ROBUST, SLOWEST  # noqa: E402
 import images  # noqa: E402
+from tilt_case import InFolder, run_tilt  # noqa: E402
 from tilt import cli, errors, native, stream  # noqa: E402
 from tilt.commands import replay as command  # noqa: E402
 
@@ -40,20 +41,15 @@ def read_rows(path):
     return np.array([line.split(",") for line in whole], np.int64)
 
 
-class Case(unittest.TestCase):
+class Case(InFolder):
     @classmethod
     def setUpClass(cls):
         subprocess.run(["make", "-s", FIRMWARE], check=True)
 
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        self.path = pathlib.Path(self.folder.name)
-
     def firmware(self, path, name, *options):
-        subprocess.run([FIRMWARE, "--in", path, "--out", self.path / "fw.csv", "--served", self.path / "served.csv", "--filter", name, *options],
+        subprocess.run([FIRMWARE, "--in", path, "--out", self.folder / "fw.csv", "--served", self.folder / "served.csv", "--filter", name, *options],
                        check=True)
-        return read_rows(self.path / "fw.csv")
+        return read_rows(self.folder / "fw.csv")
 
     def assert_same(self, sent, rows, message):
         """The firmware goes on for 300 ms after the end of a stream, with predictions."""
@@ -64,7 +60,7 @@ class Case(unittest.TestCase):
             self.fail(f"{message}: row {differ[0]} of {len(own)}: firmware {sent[differ[0], 1:]}, replay {own[differ[0]]}")
 
     def made(self, lsb, flags=None, step_us=10000, t_us=None):
-        path = self.path / "made.csv"
+        path = self.folder / "made.csv"
         stream.write(path, np.arange(len(lsb)) * step_us if t_us is None else t_us, lsb, flags=flags)
         return path
 
@@ -89,7 +85,7 @@ class EqualsFirmware(Case):
         has a row more or less then: compared up to there, and ten silences at least."""
         for name in native.filters():
             sent = self.firmware(SHIPPED[[path.stem for path in SHIPPED].index("gaps-jitter")], name)
-            rows = native.replay(stream.read(self.path / "served.csv"), [name], 1000)[name]
+            rows = native.replay(stream.read(self.folder / "served.csv"), [name], 1000)[name]
             length = min(len(sent), len(rows))
             differ = np.flatnonzero((sent[:length, 9] ^ rows["flags"][:length]) & COASTED)
             end = differ[0] if len(differ) else length
@@ -102,10 +98,10 @@ class EqualsFirmware(Case):
         typed = [f"{200 + 50 * i}:{text}" for i, text in enumerate(("stop", *commands, "go"))]
         sent = self.firmware(path, name, *(word for text in typed for word in ("--cmd", text)), "--max-ms", "6000", "--loop")
         skip = np.flatnonzero(np.diff(sent[:, 0]) > 100_000)[0] + 1
-        lines = (self.path / "served.csv").read_text(encoding="ascii").splitlines()
+        lines = (self.folder / "served.csv").read_text(encoding="ascii").splitlines()
         served = [line for line in lines[1:] if int(line.split(",")[1]) >= sent[skip, 0] - 1000]
-        (self.path / "tail.csv").write_text("\n".join([lines[0], *served]) + "\n", encoding="ascii")
-        return sent[skip:], self.path / "tail.csv"
+        (self.folder / "tail.csv").write_text("\n".join([lines[0], *served]) + "\n", encoding="ascii")
+        return sent[skip:], self.folder / "tail.csv"
 
     def test_at_400_hz(self):
         for name in (DEFAULT, ROBUST, SLOWEST):
@@ -127,7 +123,7 @@ class EqualsFirmware(Case):
                          "the simulator is not built: make system_images")
     def test_the_chip(self):
         for stem, name in (("outliers-15pct", DEFAULT), ("bad-reads", ROBUST), ("clipping", PLAIN), ("through-roll-180", LIGHT)):
-            out = self.path / "chip.csv"
+            out = self.folder / "chip.csv"
             subprocess.run([SIMRUN, "--fw", images.image_with(name), "--in", f"sim/streams/{stem}.csv", "--out", out, "--filter", name], check=True,
                            capture_output=True)
             sent = read_rows(out)
@@ -207,13 +203,10 @@ class Itself(Case):
 
 class Command(Case):
     def run_it(self, *words):
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            status = cli.main(["replay", *map(str, words)])
-        return status, out.getvalue(), err.getvalue()
+        return run_tilt("replay", *words)
 
     def test_one_filter_has_the_columns_of_the_firmware_and_its_output_is_a_stream(self):
-        out = self.path / "out.csv"
+        out = self.folder / "out.csv"
         status, said, _ = self.run_it("sim/streams/gaps-jitter.csv", "--filter", ROBUST, "-o", out)
         self.assertEqual(status, 0)
         self.assertTrue(out.read_text(encoding="ascii").startswith(HEADER + ",roll_true_cdeg,pitch_true_cdeg\n"))
@@ -227,7 +220,7 @@ class Command(Case):
         np.testing.assert_array_equal(again.roll_true_cdeg[~again.missing], given.roll_true_cdeg)
 
     def test_several_have_columns_each_and_flags_in_common(self):
-        out = self.path / "out.csv"
+        out = self.folder / "out.csv"
         status, said, _ = self.run_it("sim/streams/outliers-15pct.csv", "--filter", f"{PLAIN},{ROBUST}", "--rate", "100", "-o", out)
         self.assertEqual(status, 0)
         self.assertIn(f"{out}: 6000 rows written", said)
@@ -251,7 +244,7 @@ class Command(Case):
 
     def test_the_recording_is_never_replaced(self):
         """Nor by another name of it: it holds what the rows do not, as the board's words."""
-        mine, other = self.path / "mine.csv", self.path / "other.csv"
+        mine, other = self.folder / "mine.csv", self.folder / "other.csv"
         mine.write_text("# a word of the board\nt_us,x,y,z\n" + "".join(f"{10000 * n},1,2,256\n" for n in range(30)), encoding="ascii")
         other.symlink_to(mine)
         before = mine.read_bytes()

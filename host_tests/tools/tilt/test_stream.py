@@ -1,24 +1,22 @@
 #!/usr/bin/env python3
 """Tests of the reader and writer of streams: docs/protocol.md, "Streams". What is refused is refused in the words of sim/model/stream.c, which
-host_tests/sim/test_stream.c holds to the same texts. Run from the repository root with build/venv/bin/python."""
+host_tests/sim/test_stream.c holds to the same texts."""
 import pathlib
 import sys
-import tempfile
-import unittest
 from unittest import mock
 
 import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+from tilt_case import InFolder  # noqa: E402
 from tilt import errors, stream  # noqa: E402
 
 
-class Case(unittest.TestCase):
+class Case(InFolder):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        self.path = pathlib.Path(self.folder.name) / "s.csv"
+        super().setUp()
+        self.path = self.folder / "s.csv"
 
     def read(self, text, columns=()):
         self.path.write_bytes(text.encode() if isinstance(text, str) else text)

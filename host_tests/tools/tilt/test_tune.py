@@ -1,14 +1,10 @@
 #!/usr/bin/env python3
 """Tests of `tilt tune`: recordings made here by the filters' own model with known R and q, whose estimates must lie within intervals that the
-theory of the likelihood gives (Whittle), and recordings that the model does not fit, for which it may claim nothing. Run from the repository
-root with build/venv/bin/python."""
-import contextlib
-import io
+theory of the likelihood gives (Whittle), and recordings that the model does not fit, for which it may claim nothing."""
 import json
 import math
 import pathlib
 import sys
-import tempfile
 import unittest
 
 import numpy as np
@@ -16,7 +12,8 @@ import numpy as np
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
-from tilt import cli, model, native, rest, stream  # noqa: E402
+from tilt_case import InFolder, run_tilt  # noqa: E402
+from tilt import model, native, rest, stream  # noqa: E402
 from tilt.commands import tune  # noqa: E402
 
 T_S, REST_S, PART_S, PARTS = 0.01, 20, 8, 8
@@ -53,21 +50,17 @@ def sigma_of_log_q(q, r, samples):
     return 1.0 / math.sqrt(3.0 * by_q), by_both / by_q
 
 
-class Case(unittest.TestCase):
+class Case(InFolder):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        self.path = pathlib.Path(self.folder.name) / "made.csv"
+        super().setUp()
+        self.path = self.folder / "made.csv"
 
     def write(self, lsb, segments=None):
         begins = np.arange(len(lsb)) * 10000
         stream.write(self.path, begins, lsb, segments=segments)
 
     def tune(self, *words):
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            status = cli.main(["tune", str(self.path), *words])
-        return status, out.getvalue(), err.getvalue()
+        return run_tilt("tune", self.path, *words)
 
     def answer(self, *words):
         status, out, _ = self.tune("--json", *words)

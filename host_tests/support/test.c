@@ -1,0 +1,32 @@
+#include "support/test.h"
+
+static test_t *first;
+
+void test_add(test_t *test)
+{
+    test_t **at = &first;
+    while (*at != NULL && (*at)->line < test->line) {
+        at = &(*at)->next;
+    }
+    test->next = *at;
+    *at = test;
+}
+
+int test_all(void)
+{
+    UnityBegin((first != NULL) ? first->file : "no test");
+    for (const test_t *test = first; test != NULL; test = test->next) {
+        TEST_RUN(test->run, test->name, test->line);
+    }
+    return UnityEnd();
+}
+
+/* The test program's own, if it has one. */
+__attribute__((weak)) void setUp(void) {}
+
+__attribute__((weak)) void tearDown(void) {}
+
+__attribute__((weak)) int main(void)
+{
+    return test_all();
+}
