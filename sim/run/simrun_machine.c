@@ -1,6 +1,6 @@
 /*
  * What simavr 1.6 gets wrong is corrected here (no-op sleep, interrupts pending at SEI), in simrun_times.c (interrupt
- * entry time), simrun_mcu.c (frequency) and simrun_resets.c (resets that drop every timer, level interrupts), and
+ * entry time), simrun_mcu.c (frequency, level interrupts) and simrun_resets.c (resets that drop every timer), and
  * every instruction is checked: program counter, stack pointer, illegal opcodes.
  */
 #include "simrun_machine.h"
