@@ -94,6 +94,7 @@ def named(name):
     return None, False
 
 
+@functools.cache
 def part_of(chain):
     """(part, stranger): a chain of functions, the outermost first, belongs to the innermost that a part names. The stranger is the function
     for which it is in no part."""

@@ -1,4 +1,5 @@
 """More faults of the simulator: what the bus, the MCU and the UART suffer; part of system_tests.py."""
+import functools
 import re
 
 from system_injections import REST, altered, bus_probe, injected
@@ -158,11 +159,20 @@ def judge_looks_back_over_what_is_kept_of_a_long_run():
 FLICKERS = "# fault 13: INT1 flickers: check INT1 to D2"
 
 
+def options_at(rate):
+    return "--rate", rate, "--every", 4 if rate == 800 else 1, "--baud", 500000
+
+
+@functools.cache
+def calm_at(rate):
+    """Statistics of six seconds without a fault."""
+    return injected(f"calm-{rate}", max_ms=6000, options=options_at(rate))[3]
+
+
 def flickering(name, fault, rate):
     """What a fault at 2000 ms that lasts 2 s does: rows, lines about faults, load and moments of the lines, against a run without it."""
-    options = ("--rate", rate, "--every", 4 if rate == 800 else 1, "--baud", 500000)
-    calm = injected(f"{name}-calm", max_ms=6000, options=options)[3]
-    _, notes, served, stats = injected(name, fault, judge=True, max_ms=6000, options=options)
+    calm = calm_at(rate)
+    _, notes, served, stats = injected(name, fault, judge=True, max_ms=6000, options=options_at(rate))
     assert stats["resets"] == 0 and stats["rows_wrong"] == 0, (name, stats["resets"], stats["rows_wrong"])
     assert calm["rows"] - 2 <= stats["rows"] <= calm["rows"] + 1, f"{name}: {stats['rows']} rows, {calm['rows']} without the fault"
     assert stats["rows_stale"] == 0 and stats["sensor_overruns"] == 0, (name, stats["rows_stale"], stats["sensor_overruns"])
@@ -197,8 +207,8 @@ def storm_has_one_number_whatever_its_phase():
 
 def by_the_clock(name, rate, ppm, *faults):
     """A sensor that is read without INT1: no sample is lost, none is stale, whatever its clock."""
-    every = 4 if rate == 800 else 1
-    options = ("--rate", rate, "--every", every, "--baud", 500000, "--ppm", ppm)
+    options = (*options_at(rate), "--ppm", ppm)
+    every = options[options.index("--every") + 1]
     _, notes, served, stats = injected(name, *faults, judge=True, max_ms=6000, options=options)
     what = (name, stats["resets"], stats["rows"], stats["rows_wrong"], stats["rows_stale"], stats["sensor_overruns"])
     assert stats["resets"] == stats["rows_wrong"] == stats["rows_stale"] == stats["sensor_overruns"] == 0, what

@@ -183,7 +183,7 @@ def simulator_is_fast_at_400_hz():
 
 @test
 def a_slow_simulator_is_noticed():
-    """A profile wants a step for each instruction."""
+    """A profile wants a step for each branch."""
     slow = steps_for_work("speed-slow", STREAMS / "tilt-400hz.csv", 5, *AT_400_HZ, "--profile", OUT / "speed-slow.prof")
     assert slow > STEPS_FOR_WORK, slow
 

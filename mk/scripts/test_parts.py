@@ -5,6 +5,7 @@ A test needs the archive of each folder whose headers it includes, whatever the 
 sources (references, helpers of nav/lib, the judge of simrun) whose headers it includes. A folder's archive holds all its sources, so all of
 them are followed; of the helpers in host_tests/support, whose archive every test has, only those whose header is included.
 """
+import functools
 import pathlib
 import re
 import sys
@@ -24,9 +25,20 @@ def headers():
     """name -> file of every header that a test can include; those of host_tests by their room: support/board.h"""
     found = {}
     for folder in FOLDERS:
-        for path in sorted(pathlib.Path(".").glob(f"{folder}/*.h*")):
+        for path in matching(f"{folder}/*.h*"):
             found.setdefault("/".join(path.parts[1:]) if path.parts[0] == "host_tests" else path.name, path)
     return found
+
+
+@functools.cache
+def included(path):
+    """Names of what a file includes."""
+    return INCLUDE.findall(path.read_text(encoding="utf-8"))
+
+
+@functools.cache
+def matching(pattern):
+    return sorted(pathlib.Path(".").glob(pattern))
 
 
 class Parts:
@@ -39,7 +51,7 @@ class Parts:
         if path in self.seen:
             return
         self.seen.add(path)
-        for name in INCLUDE.findall(path.read_text(encoding="utf-8")):
+        for name in included(path):
             header = self.known.get(name) or self.known.get(pathlib.PurePath(name).name)
             if header is not None:
                 self.meet(header)
@@ -50,9 +62,9 @@ class Parts:
         folder = str(header.parent)
         for archive, home in ARCHIVES.items():
             if folder == home or (archive == "hal" and folder == "hal"):
-                self.take(archive, sorted(pathlib.Path(home).glob("*.c")))
+                self.take(archive, matching(f"{home}/*.c"))
         if folder.startswith(f"{ROOMS}/"):
-            self.take(ROOMS, sorted(pathlib.Path(ROOMS).glob("*/*.c")))
+            self.take(ROOMS, matching(f"{ROOMS}/*/*.c"))
         if header.stem in MODEL:
             self.take("model", [header.with_suffix(".c")])
         elif folder in SINGLE:

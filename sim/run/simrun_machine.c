@@ -1,6 +1,6 @@
 /*
  * What simavr 1.6 gets wrong is corrected here (no-op sleep, interrupts pending at SEI), in simrun_times.c (interrupt
- * entry time), simrun_mcu.c (frequency) and simrun_resets.c (resets that drop every timer, level interrupts), and
+ * entry time), simrun_mcu.c (frequency, level interrupts) and simrun_resets.c (resets that drop every timer), and
  * every instruction is checked: program counter, stack pointer, illegal opcodes.
  */
 #include "simrun_machine.h"
@@ -179,15 +179,21 @@ static void look_ahead(void)
     }
 }
 
+/* A profile wants chunks that end where the program may go elsewhere. */
+static uint64_t chunk_at(uint32_t pc)
+{
+    return profile_wanted() ? profile_straight_cycles(pc, CHUNK_CYCLES) : CHUNK_CYCLES;
+}
+
 /* True: more than the PC may have changed. */
-static bool measured_step(bool each, uint64_t chunk)
+static bool measured_step(uint64_t chunk)
 {
     bool running = mcu->state == cpu_Running;
     uint64_t began = times_own_cycles();
     last_pc = mcu->pc;
     steps++;
     bool eventful = step(chunk);
-    if (each && running) {
+    if (running && profile_wanted()) {
         profile_on_step(last_pc, times_own_cycles() - began);
     }
     return eventful;
@@ -195,13 +201,12 @@ static bool measured_step(bool each, uint64_t chunk)
 
 void machine_run(bool each)
 {
-    uint64_t chunk_cycles = each ? 0 : CHUNK_CYCLES;
     bool stack_low = false;
     do {
         if (each) {
             look_ahead();
         }
-        bool eventful = measured_step(each, stack_low ? 0 : chunk_cycles);
+        bool eventful = measured_step(each || stack_low ? 0 : chunk_at(mcu->pc));
         stack_low = stack_watch(mcu_program.end_of_ram);
         if (eventful || mcu->pc >= mcu_program.flash_bytes) {
             watch_everything(mcu->state);

@@ -92,9 +92,9 @@ static bool start_watchers(const options_t *options)
 {
     rows_start(options->clock_start_us);
     times_start();
-    bool each = profile_start(options->profile, options->calls);
+    profile_start(options->profile, options->calls);
     alter_start(options->altered, &twi);
-    each |= faults_start(&options->faults, &twi);
+    bool each = faults_start(&options->faults, &twi);
     each |= span_start(options->span);
     each |= race_start(options->race);
     rules_start();

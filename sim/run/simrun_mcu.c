@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "avr_extint.h"
 #include "avr_ioport.h"
 #include "sim_elf.h"
 #include "simrun_output.h"
@@ -184,10 +185,21 @@ static void load_program(const char *path)
     free(program.flash);
 }
 
+/*
+ * simavr 1.6 takes up a pin that is low before the program has chosen an edge as a level: it would go on to raise the
+ * interrupt in each cycle until the pin is high.
+ */
+void mcu_poll_no_levels(void)
+{
+    avr_extint_set_strict_lvl_trig(mcu, 0, 0);
+    avr_extint_set_strict_lvl_trig(mcu, 1, 0);
+}
+
 void mcu_start(const mcu_options_t *wanted)
 {
     random_state = wanted->seed * 2654435769u; /* a small seed gives small numbers at first, below every probability */
     load_program(wanted->fw);
+    mcu_poll_no_levels();
     if (wanted->bootloader != NULL) {
         load_boot_loader(wanted);
     }

@@ -28,6 +28,7 @@ extern program_size_t mcu_program;
 void mcu_start(const mcu_options_t *wanted);
 /* After a reset: simavr clears what the strap's pin reads, but not the state of its line. */
 void mcu_forget_strap(void);
+void mcu_poll_no_levels(void); /* after each reset */
 
 double mcu_ms(void);
 unsigned mcu_opcode_at(uint32_t pc); /* byte address */

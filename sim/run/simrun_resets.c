@@ -5,7 +5,6 @@
 
 #include <stddef.h>
 
-#include "avr_extint.h"
 #include "simrun_mcu.h"
 #include "simrun_stack.h"
 
@@ -41,8 +40,7 @@ static void on_reset(avr_t *avr)
 /* What a reset of the MCU leaves to simrun. */
 static void set_up_again(bool power_lost)
 {
-    avr_extint_set_strict_lvl_trig(mcu, 0, 0);
-    avr_extint_set_strict_lvl_trig(mcu, 1, 0);
+    mcu_poll_no_levels();
     mcu_forget_strap();
     set_up_parts(power_lost);
 }
