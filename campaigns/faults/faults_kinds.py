@@ -5,6 +5,7 @@ from faults_judge import GATED_ROWS, LINE_MS, NO_LIMIT, PASS_CYCLES, Command
 from laws import DEFAULT, LIGHT, PLAIN, ROBUST
 
 REST, MOVING = "sim/streams/rest-2lsb.csv", "sim/streams/tilt-slow.csv"
+SIX_SIDES = "six sides"  # made for the campaign
 BEGIN_MS, RUN_MS = 1000, 2600  # streaming and warmed up; the fault and the second after it
 BUS_MS, POWER_MS, RESET_MS = 50, 150, 600  # limits until the first good row
 
@@ -103,6 +104,9 @@ TYPED = [
     typed("typed: what the sensor's force adds", "sda:40", "selftest", "odr", every_ms=2900, more_ms=3000, said_ms=1500),
     typed("typed: calibrations", "torn", "cal6", "noise", "cal6 stop", "cal", "go", every_ms=2900, more_ms=11600,
           said_ms=20),  # two lines ahead of a row
+    # one on each side, none of which loses a sample: that would end the measurement
+    typed("typed: cal6 to its end", ("torn", "@7000 nack", "@14000 arb", "@21000 nackdata", "@28000 buserr", "@35000 glitch"), "cal6",
+          stream=SIX_SIDES, more_ms=42000, said_ms=80),
     typed("upside down", "nack", stream="sim/streams/through-roll-180.csv"), typed("upright", "nackdata", stream="sim/streams/through-pitch-90.csv"),
     # what these streams do to one axis, the filter sees on the others at another time
     *(typed(f"outliers, {name}", "nack", stream="sim/streams/steps-outliers.csv", filter_name=name, gated_rows=3 * GATED_ROWS)

@@ -15,12 +15,13 @@ import faults_judge
 import images
 import latency
 from faults_judge import Ending, Result
-from faults_kinds import BEGIN_MS, KINDS, LONG, REST, RUN_MS
+from faults_kinds import BEGIN_MS, KINDS, LONG, REST, RUN_MS, SIX_SIDES
 
 SIMRUN = pathlib.Path("build/sim/simrun")
 PERIOD_MS = 10.0
 STATUS_WORDS = {1: "simrun failed", 2: "refused", 3: "crash", 4: "illegal opcode", 5: "stack overrun", 6: "UART overrun",
                 8: "sleeps with interrupts off", 9: "the sensor is not used"}
+SIDES = ((0, 0, 1), (1, 0, 0), (0, -1, 0), (0, 1, 0), (-1, 0, 0), (0, 0, -1))
 RAW_FLAGS = 1 | 2 | 16 | 32 | 64
 
 
@@ -162,6 +163,22 @@ def moments(kind, count, seed):
 
 # --- one run ----------------------------------------------------------------------------------------------------------
 
+def six_sides(memory=[]):
+    """A stream for cal6: each side up for six seconds, then turned to the next one in one."""
+    with LOCK:
+        if not memory:
+            memory.append(pathlib.Path(STREAMS.name) / "six-sides.csv")
+            source = random.Random(6)
+            with open(memory[0], "w", encoding="ascii") as file:
+                file.write("t_us,x,y,z\n")
+                for n in range(700 * len(SIDES)):
+                    side, turned = n // 700, max(0, n % 700 - 600) / 100
+                    both = zip(SIDES[side], SIDES[(side + 1) % len(SIDES)])
+                    x, y, z = (round(256 * (a * (1 - turned) + b * turned) + source.gauss(0, 1)) for a, b in both)
+                    file.write(f"{10000 * n},{x},{y},{z}\n")
+    return memory[0]
+
+
 def ends_of(stats):
     """(end in ms, ms from it to the first good row or None) of every fault that came."""
     for n in itertools.count(1):
@@ -172,12 +189,19 @@ def ends_of(stats):
             yield stats[f"fault_{n}_last_end_ms"], stats[f"fault_{n}_worst_recovery_ms"] if good else None
 
 
+def stream_of(kind):
+    """The stream of a kind's run, where it is not that of its rate."""
+    if kind.command:
+        return noise_at(kind.command.rate)
+    return six_sides() if kind.stream == SIX_SIDES else kind.stream
+
+
 def options_of(kinds, whens):
     """What a run with these kinds, each beginning at its WHEN, gives to simrun."""
     options = [word for kind, when in zip(kinds, whens) for fault in kind.faults(when) for word in ("--fault", fault)]
     options += ["--expect-resets", sum(kind.resets for kind in kinds)]
     options += [word for kind in kinds for typed in kind.typed for word in ("--cmd", typed)]
-    stream = noise_at(kinds[0].command.rate) if kinds[0].command else kinds[0].stream
+    stream = stream_of(kinds[0])
     return options + (["--in", stream] if stream else [])
 
 
