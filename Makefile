@@ -24,7 +24,7 @@ $(if $(MISSPELT),$(error $(MISSPELT)))
 endif
 
 # all parts of this file, sorted by name whatever folder they are in
-RULES := $(wildcard $(addsuffix *.mk,mk/ checks/ nav/ second/ tools/*/ campaigns/ campaigns/*/ host_tests/*/))
+RULES := $(wildcard $(addsuffix *.mk,mk/ checks/ nav/ second/ web/ tools/*/ campaigns/ campaigns/*/ host_tests/*/))
 RULES := $(foreach rule,$(sort $(foreach rule,$(RULES),$(notdir $(rule))|$(rule))),$(lastword $(subst |, ,$(rule))))
 
 ## help: list the targets

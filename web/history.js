@@ -1,19 +1,21 @@
 /* The last rows, and the points of a line through them. */
 "use strict";
 
+const ANGLES = ["rawRoll", "roll", "trueRoll", "rawPitch", "pitch", "truePitch"];
+
 class RowHistory {
   constructor(size = 65536) { /* a minute at 800 rows a second; a power of two */
     this.size = size;
     this.count = 0;
     this.s = new Float64Array(size);
-    for (const name of ["rawRoll", "roll", "rawPitch", "pitch"]) this[name] = new Float32Array(size);
+    for (const name of ANGLES) this[name] = new Float32Array(size); /* undefined becomes NaN: not known */
     this.flags = new Uint16Array(size);
     this.apart = new Uint8Array(size);
   }
 
   push(row) {
     const at = this.count++ & (this.size - 1);
-    for (const name of ["s", "rawRoll", "roll", "rawPitch", "pitch", "flags"]) this[name][at] = row[name];
+    for (const name of ["s", "flags", ...ANGLES]) this[name][at] = row[name];
     this.apart[at] = row.apart ? 1 : 0;
   }
 
@@ -53,6 +55,12 @@ function eachPixel(history, column, low, high, pixelOf, line) {
   };
   for (let k = low; k < high; k++) {
     const value = values[k & mask], at = pixelOf(history.s[k & mask]);
+    if (Number.isNaN(value)) {
+      if (x === x) flush();
+      x = NaN;
+      starts = true;
+      continue;
+    }
     const parted = history.apart[k & mask] || Math.abs(value - last) > 180; /* roll wraps from 180 to -180 */
     if (at === x && !parted) {
       least = Math.min(least, value);

@@ -10,15 +10,22 @@ class Page {
   constructor() {
     this.history = new RowHistory();
     this.protocol = new Protocol({ row: (row) => this.row(row), note: (text) => this.note(text) });
-    this.charts = [new Chart(byId("roll"), "roll", "rawRoll", "roll", 180), new Chart(byId("pitch"), "pitch", "rawPitch", "pitch", 90)];
+    this.charts = [this.chart("roll", { raw: "rawRoll", filtered: "roll", truth: "trueRoll", limit: 180 }),
+      this.chart("pitch", { raw: "rawPitch", filtered: "pitch", truth: "truePitch", limit: 90 })];
     this.lamps = FLAGS.map(([bit, name, kind]) => this.lamp(bit, name, kind));
     Object.assign(this, { newest: null, arrivedMs: -Infinity, fault: null, logged: [], past: [], pastAt: 0, asked: true, filter: "", filters: [],
       dirty: true, frozenS: null, drawnMs: -Infinity, writtenMs: -Infinity, firstPictureMs: null, begunMs: null });
+    for (const element of document.querySelectorAll("[data-truth]")) element.hidden = !this.knowsTruth;
     byId("ladder").innerHTML = horizonLadder();
     this.listen();
     this.recolour();
     requestAnimationFrame((now) => this.frame(now));
   }
+
+  chart(title, { truth, ...rest }) { return new Chart(byId(title), title, { ...rest, truth: this.knowsTruth ? truth : null }); }
+
+  /* the source knows the true angles of each row */
+  get knowsTruth() { return false; }
 
   /* called by the sources */
 
@@ -188,7 +195,7 @@ class Page {
   recolour() {
     const probe = byId("dot"), style = probe.style.color;
     this.colours = {};
-    for (const name of ["raw", "filtered", "gate", "absent", "grid", "dim", "ink"]) {
+    for (const name of ["raw", "filtered", "truth", "gate", "absent", "grid", "dim", "ink"]) {
       probe.style.color = `var(--${name})`;
       this.colours[name] = getComputedStyle(probe).color;
     }

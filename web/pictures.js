@@ -4,8 +4,8 @@
 const STEPS = [0.5, 1, 2, 5, 10, 15, 30, 45, 90];
 
 class Chart {
-  constructor(canvas, title, raw, filtered, limit) {
-    Object.assign(this, { canvas, title, raw, filtered, limit, low: -5, high: 5, fresh: true });
+  constructor(canvas, title, { raw, filtered, truth = null, limit }) {
+    Object.assign(this, { canvas, title, raw, filtered, truth, limit, low: -5, high: 5, fresh: true });
   }
 
   /* The range of the axis: the filtered line and the mean of the raw one (calibration shifts them) with a margin, changed only
@@ -54,6 +54,7 @@ class Chart {
     this.marks(view, history);
     this.line(view, history, this.raw, colours.raw, 1);
     this.line(view, history, this.filtered, colours.filtered, 2);
+    if (this.truth) this.line(view, history, this.truth, colours.truth, 1.5, [6, 4]);
     pen.restore();
     this.words(view, history);
   }
@@ -108,7 +109,8 @@ class Chart {
     }
   }
 
-  line({ pen, scale, low, high, x, y }, history, column, colour, size) {
+  line({ pen, scale, low, high, x, y }, history, column, colour, size, dashes = []) {
+    pen.setLineDash(dashes.map((length) => length * scale));
     pen.strokeStyle = colour;
     pen.lineWidth = size * scale;
     pen.lineJoin = "round";

@@ -58,7 +58,7 @@ class Losses {
 }
 
 class Protocol {
-  /* on.row({s, apart, lsb or null, mg or null, rawRoll, roll, rawPitch, pitch, flags}), angles in degrees, s in seconds that never
+  /* on.row({t_us, s, apart, lsb or null, mg or null, rawRoll, roll, rawPitch, pitch, flags}), angles in degrees, s in seconds that never
      go back; on.note(text) for each comment line, without its #. */
   constructor(on) {
     Object.assign(this, { on, rows: 0, broken: 0, restarts: 0, suspect: null, s: 0, losses: new Losses(), arrived: 0, plotted: [], mode: "csv" });
@@ -164,7 +164,7 @@ class Protocol {
     this.mode = "csv";
     this.rows++;
     const { x_lsb: x, y_lsb: y, z_lsb: z } = value, up = z * Z_TO_XY;
-    this.on.row({ s: this.s, apart, lsb: [x, y, z], mg: [value.x_mg, value.y_mg, value.z_mg], rawRoll: Math.atan2(y, up) * DEGREES,
+    this.on.row({ t_us: value.t_us, s: this.s, apart, lsb: [x, y, z], mg: [value.x_mg, value.y_mg, value.z_mg], rawRoll: Math.atan2(y, up) * DEGREES,
       roll: value.roll_cdeg / 100, rawPitch: Math.atan2(-x, Math.hypot(y, up)) * DEGREES, pitch: value.pitch_cdeg / 100, flags: value.flags });
   }
 
