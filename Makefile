@@ -147,6 +147,7 @@ test:
 	@sh tools/deps.sh design || echo "test: test_design will be skipped"
 	@sh tools/deps.sh tilt || echo "test: the tests of tilt will be skipped"
 	@sh tools/deps.sh live || echo "test: the tests of the page of tilt live will be skipped"
+	@sh tools/deps.sh demo || echo "test: the tests of the demo will be skipped"
 	@python3 mk/scripts/progress.py $(MAKE) -j2 --no-print-directory $$($(TEST_ENV) python3 campaigns/tests/test_table.py targets)
 	@$(TEST_ENV) python3 campaigns/tests/run_tests.py
 

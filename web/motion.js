@@ -14,7 +14,8 @@ class Motion {
 
   /* Asks as iOS wants: within a click. Resolves once the sensor reports; an error says why it does not. */
   async start() {
-    const asks = typeof DeviceMotionEvent.requestPermission === "function"; /* iOS, where the sign is the opposite of the standard's */
+    const asks = typeof DeviceMotionEvent.requestPermission === "function";
+    const sign = navigator.vendor.startsWith("Apple") ? -1 : 1; /* WebKit reports the opposite of the standard's sign */
     if (asks && await DeviceMotionEvent.requestPermission().catch(() => "denied") !== "granted") {
       throw new Error("the motion sensor was refused: allow motion for this site in the browser's settings");
     }
@@ -23,7 +24,7 @@ class Motion {
     this.listener = ({ accelerationIncludingGravity: felt }) => {
       if (!felt || felt.x === null) return;
       this.heard = true;
-      this.onMotion([felt.x, felt.y, felt.z].map((each) => (asks ? -each : each) / G));
+      this.onMotion([felt.x, felt.y, felt.z].map((each) => sign * each / G));
     };
     addEventListener("devicemotion", this.listener);
     await new Promise((resolve) => setTimeout(resolve, FIRST_EVENT_MS));

@@ -1,5 +1,5 @@
 // The Web Worker of the demo page: the board at the pace of a clock. Messages in: {start} once, then {world}, {recording}, {typed}, {fault},
-// {press}, {power}, {speed}; out: {text, samples, led}, {status}, {booted}, {eeprom}, {replays}, {refused}, {broken}.
+// {press}, {power}, {speed}; out: {samples, text, led}, {status}, {booted}, {eeprom}, {replays}, {refused}, {broken}.
 import { CPU_HZ, MCUSR } from '../../second/uno.mjs';
 import { Cells, DemoBoard } from './board.mjs';
 import { Recording, read } from './recording.mjs';
@@ -63,10 +63,10 @@ class Simulator {
 
   // --- the sensor ---
 
-  seconds(cycle) { return (this.past + cycle) / CPU_HZ; }
+  us(cycle) { return (this.past + cycle) / (CPU_HZ / 1e6); }
 
   feed(cycle) {
-    this.world.moveTo(this.seconds(cycle));
+    this.world.moveTo(this.us(cycle));
     return this.world.sample(this.board.sensor.periodCycles * 1e6 / CPU_HZ);
   }
 
@@ -79,7 +79,7 @@ class Simulator {
   silence() {
     const { board } = this, now = board.usOf(board.uno.cpu.cycles);
     if (now - this.truthUs < TRUTH_MS * 1000 && now >= this.truthUs) return;
-    this.world.moveTo(this.seconds(board.uno.cpu.cycles));
+    this.world.moveTo(this.us(board.uno.cpu.cycles));
     this.truthUs = now;
     this.samples.push([now, this.world.truth, null]);
   }
@@ -111,7 +111,7 @@ class Simulator {
     }
     this.lastMs = performance.now();
     this.window.ms += board.ms - before;
-    postMessage({ text: board.takeText(), samples: this.samples, led: board.led });
+    postMessage({ samples: this.samples, text: board.takeText(), led: board.led });
     this.samples = [];
   }
 

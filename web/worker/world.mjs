@@ -24,7 +24,7 @@ export class World {
     this.settings = { mode: 'self', roll: 0, pitch: 0, phone: null, noise: 2, outliers: 0 };
     this.recording = null;
     this.tilt = [0, 0];
-    this.seconds = 0;
+    this.us = 0;
     this.knockedAt = this.pushedAt = -Infinity;
   }
 
@@ -33,15 +33,18 @@ export class World {
     Object.assign(this.settings, changes);
   }
 
+  get seconds() { return this.us / 1e6; }
+
   knock() { this.knockedAt = this.seconds; }
 
   push() { this.pushedAt = this.seconds; }
 
   // time passes
-  moveTo(seconds) {
+  moveTo(us) {
     const { mode, roll, pitch } = this.settings;
-    const passed = seconds - this.seconds;
-    this.seconds = seconds;
+    const passed = (us - this.us) / 1e6;
+    this.us = us;
+    const { seconds } = this;
     if (mode === 'self') {
       const turn = (hz) => Math.sin(2 * Math.PI * hz * seconds);
       this.tilt = [SWING.rollDegrees * turn(SWING.rollHz), SWING.pitchDegrees * turn(SWING.pitchHz)];
@@ -80,7 +83,7 @@ export class World {
   // the sensor's next sample in LSB; null: none
   sample(periodUs) {
     const { mode, noise, outliers } = this.settings;
-    const clean = mode === 'recording' ? this.recording.next(this.seconds * 1e6, periodUs) : this.acceleration().map((g, axis) => g * LSB_PER_G[axis]);
+    const clean = mode === 'recording' ? this.recording.next(this.us, periodUs) : this.acceleration().map((g, axis) => g * LSB_PER_G[axis]);
     if (clean === null || mode === 'recording') return clean;
     return clean.map((lsb) => {
       const spoilt = lsb + noise * this.normal() + (this.random() < outliers ? this.outlier() : 0);

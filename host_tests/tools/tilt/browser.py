@@ -165,7 +165,7 @@ class Page:
         for kind in ("keyDown", "keyUp"):
             text = {"text": "\r"} if key == "Enter" and kind == "keyDown" else {}
             self.call("Input.dispatchKeyEvent", type=kind, key=key, code=code or key,
-                      windowsVirtualKeyCode={"Tab": 9, "Enter": 13, " ": 32, "ArrowRight": 39, "ArrowUp": 38}.get(key, 0), **text)
+                      windowsVirtualKeyCode={"Tab": 9, "Enter": 13, " ": 32, "Home": 36, "ArrowRight": 39, "ArrowUp": 38}.get(key, 0), **text)
 
     def type(self, text):
         self.call("Input.insertText", text=text)
