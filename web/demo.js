@@ -1,7 +1,7 @@
 /* The demo: the firmware in a Web Worker as the source of the lines, and a person's hands on the virtual sensor. */
 "use strict";
 
-const MOST_DEGREES = 80, KEY_DEGREES = 5, DEGREES_PER_PIXEL = 0.8, FILE_MB = 64, BEHIND = 0.9, BEHIND_FOR = 3, NOTICE_MS = 15000, SLACK_US = 20000;
+const MOST_DEGREES = 80, KEY_DEGREES = 5, DEGREES_PER_PIXEL = 0.8, FILE_MB = 64, BEHIND = 0.9, BEHIND_FOR = 3, NOTICE_MS = 15000, SLACK_US = 20000, MOST_MEASURED = 4000;
 const PAD_KEYS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }; /* the side that goes down: x, y */
 const bytesOf = (base64) => Uint8Array.from(atob(base64.trim()), (each) => each.charCodeAt(0));
 const limited = (value) => Math.max(-MOST_DEGREES, Math.min(MOST_DEGREES, value));
@@ -37,7 +37,7 @@ class DemoPage extends Page {
   get on() {
     return {
       booted: () => this.begin(true),
-      samples: (samples) => this.measured.push(...samples),
+      samples: (samples) => { this.measured = [...this.measured, ...samples].slice(-MOST_MEASURED); },
       text: (text) => { if (text) this.feed(text); this.turnBoard(); },
       led: (on) => byId("led").classList.toggle("on", on),
       status: (status) => this.status(status),
@@ -100,7 +100,9 @@ class DemoPage extends Page {
   truthOf(t_us) {
     const { measured } = this;
     if (t_us === undefined) return measured.splice(0, Math.max(0, measured.length - 1))[0]?.[1] ?? this.newestTruth;
-    while (measured.length > 1 && Math.abs(measured[1][0] - t_us) <= Math.abs(measured[0][0] - t_us)) measured.shift();
+    let nearest = 0;
+    measured.forEach((each, n) => { if (Math.abs(each[0] - t_us) <= Math.abs(measured[nearest][0] - t_us)) nearest = n; });
+    measured.splice(0, nearest); /* what was before, a reset's other times too */
     return measured.length && Math.abs(measured[0][0] - t_us) < SLACK_US ? measured[0][1] : null;
   }
 

@@ -5,11 +5,12 @@ class Kept {
   constructor(name, say) { Object.assign(this, { name, say, warned: false }); }
 
   read() {
+    let text = null;
+    try { text = localStorage.getItem(this.name); } catch (error) { this.warn(error); }
     try {
-      const text = localStorage.getItem(this.name);
       return text && Uint8Array.from(atob(text), (each) => each.charCodeAt(0));
-    } catch (error) {
-      this.warn(error);
+    } catch {
+      this.say("The EEPROM that this browser has kept cannot be read: it is empty.");
       return null;
     }
   }

@@ -47,8 +47,8 @@ export class DemoBoard extends Board {
     return wires;
   }
 
-  // microseconds as the firmware counts them
-  usOf(cycle) { return (cycle - this.beganAt) * 1e6 / CPU_HZ; }
+  // microseconds as the firmware counts them, in 32 bits
+  usOf(cycle) { return (cycle - this.beganAt) * 1e6 / CPU_HZ % 2 ** 32; }
 
   get led() { return this.uno.portB.pinState(LED) === avr.PinState.High; }
 

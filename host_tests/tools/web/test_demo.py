@@ -106,6 +106,13 @@ class TestHands(DemoCase):
             page.until(f"tiltPage.figures().rows > {rows + 50}")
         page.until("!tiltPage.figures().lamps.silence.lit")
 
+    def test_the_truth_is_known_after_a_reset(self):
+        page = self.demo(rows=100)
+        self.press(page, "reset")
+        page.until("tiltPage.figures().restarts || heard.text.includes('# reset: reset')")
+        rows = page.figures()["rows"]
+        page.until(f"tiltPage.figures().rows > {rows + 30} && Math.abs(tiltPage.newest.trueRoll - tiltPage.newest.roll) < 3")
+
     def test_a_fault_outlasts_reset_and_power(self):
         page = self.demo()
         self.press(page, "unplug")

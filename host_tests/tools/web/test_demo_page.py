@@ -96,7 +96,7 @@ class TestBadInput(DemoCase):
     def test_stored_nonsense_is_an_empty_eeprom(self):
         page = self.demo("try { localStorage.setItem('tilt-uno EEPROM', '\u00e9 no base64'); } catch {}")
         self.addCleanup(page.value, "localStorage.clear()")
-        self.notice(page, "does not let the page store anything")
+        self.notice(page, "The EEPROM that this browser has kept cannot be read")
         page.until("heard.text.includes('# settings: defaults')")
 
     def test_worker_that_falls_behind(self):
