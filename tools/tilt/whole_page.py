@@ -2,7 +2,9 @@
 import pathlib
 import re
 
-WEB = pathlib.Path(__file__).resolve().parents[2] / "web"
+HERE = pathlib.Path(__file__).resolve()
+# beside this file in a wheel, at the top of a checkout
+WEB = HERE.with_name("web") if HERE.with_name("web").is_dir() else HERE.parents[2] / "web"
 PARTS = (('<link rel="stylesheet" href="{}">', "style"), ('<script src="{}"></script>', "script"))
 
 
