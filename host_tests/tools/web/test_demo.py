@@ -38,6 +38,7 @@ class TestRows(DemoCase):
         print(f"seed {SEED}: {min(len(rows), len(sim_rows))} rows against simrun's")
         self.assertGreaterEqual(min(len(rows), len(sim_rows)), ROWS - 5)
         self.assertIsNone(apart(rows, sim_rows))
+        self.assertIsNotNone(apart(rows, sim_rows[1:]))  # the twin: a row late
         self.assertGreater(sum(row[9] & 1 for row in rows), ROWS // 10)  # 15 % outliers an axis: many rows are gated
         banner = words.index("t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags")
         self.assertEqual(words[:banner + 1], sim_words[:banner + 1])
