@@ -1,7 +1,9 @@
 /* The demo: the firmware in a Web Worker as the source of the lines, and a person's hands on the virtual sensor. */
 "use strict";
 
-const MOST_DEGREES = 80, KEY_DEGREES = 5, DEGREES_PER_PIXEL = 0.8, FILE_MB = 64, BEHIND = 0.9, BEHIND_FOR = 3, NOTICE_MS = 15000, SLACK_US = 20000, MOST_MEASURED = 4000;
+const MOST_DEGREES = 80, KEY_DEGREES = 5, DEGREES_PER_PIXEL = 0.8, FILE_MB = 64, NOTICE_MS = 15000;
+const BEHIND = 0.9, BEHIND_FOR = 3; /* of the pace asked for, in so many reports in a row */
+const SLACK_US = 20000, MOST_MEASURED = 4000;
 const PAD_KEYS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }; /* the side that goes down: x, y */
 const bytesOf = (base64) => Uint8Array.from(atob(base64.trim()), (each) => each.charCodeAt(0));
 const limited = (value) => Math.max(-MOST_DEGREES, Math.min(MOST_DEGREES, value));
@@ -12,20 +14,27 @@ class DemoPage extends Page {
   start() {
     this.measured = []; /* [t_us, [roll, pitch] or null, lsb or null] since the last row */
     this.hand = [0, 0];
+    this.powered = true;
     this.behind = 0;
     this.kept = new Kept("tilt-uno EEPROM", (words) => this.notice(words));
     this.motion = new Motion((phone) => this.world({ phone }));
-    this.source = { send: async (text) => { this.tell({ typed: text }); this.log(`> ${text}`, "typed"); } };
+    this.source = { send: async (text) => this.typeOn(text) };
     const flash = new Uint8Array(32768).fill(0xff);
     flash.set(bytesOf(byId("image").textContent));
     const seed = Number(new URLSearchParams(location.hash.slice(1)).get("seed") ?? 1);
     this.worker = new Worker(URL.createObjectURL(new Blob([byId("worker").textContent], { type: "text/javascript" })));
     this.worker.onmessage = ({ data }) => { for (const [name, value] of Object.entries(data)) this.on[name]?.(value, data); };
     this.worker.onerror = (event) => this.stopped(event.message || "the simulation could not be started");
-    this.tell({ start: { program: flash.buffer, eeprom: this.kept.read(), seed } });
+    const world = { outliers: Number(byId("outliers").value) / 100, noise: Number(byId("noise").value) };
+    this.tell({ start: { program: flash.buffer, eeprom: this.kept.read(), seed, world } });
     byId("phone-hint").textContent = Motion.absent() ?? "";
     byId("phone-choice").hidden = Motion.absent() !== null;
-    this.world({ outliers: Number(byId("outliers").value) / 100, noise: Number(byId("noise").value) });
+  }
+
+  typeOn(text) {
+    if (!this.powered) throw new Error("the board is switched off");
+    this.tell({ typed: text });
+    this.log(`> ${text}`, "typed");
   }
 
   tell(message) { this.worker.postMessage(message); }
@@ -99,7 +108,7 @@ class DemoPage extends Page {
 
   truthOf(t_us) {
     const { measured } = this;
-    if (t_us === undefined) return measured.splice(0, Math.max(0, measured.length - 1))[0]?.[1] ?? this.newestTruth;
+    if (t_us === undefined) return measured.at(-1)?.[1]; /* mode plot */
     let nearest = 0;
     measured.forEach((each, n) => { if (Math.abs(each[0] - t_us) <= Math.abs(measured[nearest][0] - t_us)) nearest = n; });
     measured.splice(0, nearest); /* what was before, a reset's other times too */
@@ -133,6 +142,7 @@ class DemoPage extends Page {
   hold(button) {
     const held = button.getAttribute("aria-pressed") !== "true", { hold } = button.dataset;
     button.setAttribute("aria-pressed", String(held));
+    if (hold === "power") this.powered = !held;
     this.tell(hold === "power" ? { power: !held } : { fault: [hold, held] });
   }
 

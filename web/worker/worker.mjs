@@ -8,18 +8,19 @@ import { World } from './world.mjs';
 const STEP_MS = 5, REST_MS = 25, LONGEST_MS = 40, STATUS_MS = 1000, BACKLOG_MS = 250, ASLEEP_MS = 1000, TRUTH_MS = 10;
 
 class Simulator {
-  constructor({ program, eeprom, seed }) {
+  constructor({ program, eeprom, seed, world }) {
     this.program = new Uint16Array(program);
     this.cells = new Cells(eeprom);
     this.world = new World(seed);
+    this.world.set(world);
     this.faults = { sda: false, unplug: false, int1: false };
     this.speed = 1;
     this.samples = [];
     this.truthUs = 0;
     this.past = 0; // cycles of boards that were switched off
     this.window = { at: performance.now(), ms: 0 };
-    this.turn();
     this.switch(true);
+    this.turn();
   }
 
   // --- what a person does ---
