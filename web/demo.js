@@ -1,7 +1,7 @@
 /* The demo: the firmware in a Web Worker as the source of the lines, and a person's hands on the virtual sensor. */
 "use strict";
 
-const MOST_DEGREES = 80, KEY_DEGREES = 5, DEGREES_PER_PIXEL = 0.8, FILE_MB = 64, NOTICE_MS = 15000;
+const MOST_DEGREES = 80, KEY_DEGREES = 5, DEGREES_PER_PIXEL = 0.8, FILE_MB = 64;
 const BEHIND = 0.9, BEHIND_FOR = 3; /* of the pace asked for, in so many reports in a row */
 const SLACK_US = 20000, MOST_MEASURED = 4000;
 const PAD_KEYS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }; /* the side that goes down: x, y */
@@ -90,12 +90,10 @@ class DemoPage extends Page {
     this.notice(`The simulation has stopped: ${why}. Reload the page to start it again.`);
   }
 
-  /* a sentence for a person, where it cannot be overlooked */
+  /* a sentence for a person, where it cannot be overlooked, until it is closed or another comes */
   notice(words) {
     byId("notice-words").textContent = words;
     byId("notice").hidden = false;
-    clearTimeout(this.noticeTimer);
-    this.noticeTimer = setTimeout(() => { byId("notice").hidden = true; }, NOTICE_MS);
     this.log(words, "said");
   }
 
@@ -132,7 +130,9 @@ class DemoPage extends Page {
         this.world({ [id]: Number(target.value) / scale });
       });
     }
-    for (const button of document.querySelectorAll("[data-press]")) button.addEventListener("click", () => this.tell({ press: button.dataset.press }));
+    for (const button of document.querySelectorAll("[data-press]")) {
+      button.addEventListener("click", () => this.tell({ press: button.dataset.press }));
+    }
     for (const button of document.querySelectorAll("[data-hold]")) button.addEventListener("click", () => this.hold(button));
     byId("speed").addEventListener("change", ({ target }) => this.tell({ speed: Number(target.value) }));
     byId("notice-close").addEventListener("click", () => { byId("notice").hidden = true; });

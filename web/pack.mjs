@@ -10,7 +10,8 @@ const AVR8JS = fileURLToPath(new URL('build/second/node_modules/avr8js/dist/esm/
 const avr8js = {
   name: 'avr8js',
   setup(pack) {
-    pack.onLoad({ filter: /second[/\\]avr8js\.mjs$/ }, () => ({ contents: `import * as avr from ${JSON.stringify(AVR8JS)};\nexport { avr };`, loader: 'js' }));
+    const contents = `import * as avr from ${JSON.stringify(AVR8JS)};\nexport { avr };`;
+    pack.onLoad({ filter: /second[/\\]avr8js\.mjs$/ }, () => ({ contents, loader: 'js' }));
   },
 };
 

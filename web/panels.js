@@ -11,7 +11,8 @@ const PANELS = {
 
   charts: `
     <div class="bar">
-      <span><i class="key"></i>raw</span><span><i class="key filtered"></i>filtered</span><span data-truth hidden><i class="key truth"></i>truth</span>
+      <span><i class="key"></i>raw</span><span><i class="key filtered"></i>filtered</span>
+      <span data-truth hidden><i class="key truth"></i>truth</span>
       <span><i class="key gate"></i>gated</span><span><i class="key absent"></i>no sample</span>
       <div class="end">
         <label>window <select id="span"><option value="5">5 s<option value="10" selected>10 s

@@ -30,7 +30,8 @@ class Simulator {
     this.past += this.board?.uno.cpu.cycles ?? 0;
     this.board = null;
     if (!on) return;
-    this.board = new DemoBoard({ program: this.program, eeprom: this.cells, feed: (cycle) => this.feed(cycle), onSample: (...of) => this.sampled(...of) });
+    this.board = new DemoBoard({ program: this.program, eeprom: this.cells, feed: (cycle) => this.feed(cycle),
+      onSample: (cycle, lsb) => this.sampled(cycle, lsb) });
     for (const [kind, held] of Object.entries(this.faults)) if (held) this.fault(kind, true);
     this.anchor();
     postMessage({ booted: true });

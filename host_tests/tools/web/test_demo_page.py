@@ -121,7 +121,7 @@ class TestBadInput(DemoCase):
 
     def test_notice_can_be_closed(self):
         page = self.demo()
-        page.value("tiltPage.refused('x')")
+        self.assertEqual(page.value("tiltPage.refused('x'), document.getElementById('notice-words').textContent"), "x. The page goes on without it.")
         page.value("document.getElementById('notice-close').click()")
         self.assertTrue(page.value("notice.hidden"))
 
