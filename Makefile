@@ -24,7 +24,7 @@ $(if $(MISSPELT),$(error $(MISSPELT)))
 endif
 
 # all parts of this file, sorted by name whatever folder they are in
-RULES := $(wildcard $(addsuffix *.mk,mk/ checks/ nav/ second/ tools/*/ campaigns/ campaigns/*/ host_tests/*/))
+RULES := $(wildcard $(addsuffix *.mk,mk/ checks/ nav/ second/ web/ tools/*/ campaigns/ campaigns/*/ host_tests/*/))
 RULES := $(foreach rule,$(sort $(foreach rule,$(RULES),$(notdir $(rule))|$(rule))),$(lastword $(subst |, ,$(rule))))
 
 ## help: list the targets
@@ -147,6 +147,7 @@ test:
 	@sh tools/deps.sh design || echo "test: test_design will be skipped"
 	@sh tools/deps.sh tilt || echo "test: the tests of tilt will be skipped"
 	@sh tools/deps.sh live || echo "test: the tests of the page of tilt live will be skipped"
+	@sh tools/deps.sh demo || echo "test: the tests of the demo will be skipped"
 	@python3 mk/scripts/progress.py $(MAKE) -j2 --no-print-directory $$($(TEST_ENV) python3 campaigns/tests/test_table.py targets)
 	@$(TEST_ENV) python3 campaigns/tests/run_tests.py
 

@@ -22,13 +22,13 @@ SILENCERS = [
     ("formatter silenced", re.compile(r"(clang-format off)")),
 ]
 WHERE = re.compile(r"^(firmware|lib|hal|sim|nav|host_tests|mk)/.*\.(c|h|cpp|ino|mk|sh)$|"
-                   r"^(tools|checks|campaigns|second)/.*\.(mk|sh)$|^Makefile$|^platformio\.ini$|^\.clang-tidy$")
+                   r"^(tools|checks|campaigns|second|web)/.*\.(mk|sh)$|^Makefile$|^platformio\.ini$|^\.clang-tidy$")
 
 
 def tree():
     """Walked, not asked of git: the check also runs in copies that git does not know."""
     tops = [pathlib.Path(n) for n in ("Makefile", "platformio.ini", ".clang-tidy")]
-    paths = tops + [p for f in (*FOLDERS, "mk", "tools", "checks", "campaigns", "second") for p in pathlib.Path(f).rglob("*")]
+    paths = tops + [p for f in (*FOLDERS, "mk", "tools", "checks", "campaigns", "second", "web") for p in pathlib.Path(f).rglob("*")]
     return sorted(str(p) for p in paths if WHERE.match(str(p)) and p.is_file())
 
 

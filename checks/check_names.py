@@ -22,7 +22,7 @@ DATA = ("host_tests/fuzz/corpus", "host_tests/system/transcript")
 WRITTEN = {"lib/filters/keywords.txt",  # by host_tests/tools/scripts/arduino_rules.py, of the headers
            "hal/avr/functions.ld"}      # by mk/scripts/layout.py, of the image
 # `auto` is a word of these languages too: there it counts in quotes
-HAVE_AUTO = {".cpp", ".hpp", ".html"}
+HAVE_AUTO = {".cpp", ".hpp", ".html", ".css", ".js"}
 # and a value of the settings address and i2c, of the compiler's and of the plotter's options
 NO_FILTER = re.compile(r'address auto|auto 53 1D|i2c auto|auto 100 400|-flto=auto|aspect="auto"')
 

@@ -5,7 +5,7 @@ QUOTED = r'"(?:\\.|[^"\\\n])*"' + r"|'(?:\\.|[^'\\\n])*'"
 # what is no comment stands in the group
 C_CODE = re.compile(rf"({QUOTED})|/\*.*?\*/|//[^\n]*", re.S)
 OTHER_CODE = re.compile(rf'^[ \t]*""".*?"""|(""".*?"""|{QUOTED})|(?:^|(?<=\s))#[^\n]*', re.S | re.M)
-C_LIKE = {".c", ".h", ".cpp", ".hpp", ".ino", ".js", ".mjs", ".html"}
+C_LIKE = {".c", ".h", ".cpp", ".hpp", ".ino", ".js", ".mjs", ".html", ".css"}
 
 
 def without(text, suffix):

@@ -1,5 +1,4 @@
 // An UNO with an ADXL345 at its pins, a person at the serial port, and what befalls them at a given time.
-import { readFileSync } from 'node:fs';
 import { Adxl345 } from './adxl345.mjs';
 import { TwoWire } from './twowire.mjs';
 import { Uno, CPU_HZ, MCUSR } from './uno.mjs';
@@ -13,13 +12,13 @@ export const rowsOf = (lines) => lines.filter(isRow).map((line) => line.split(',
 export const notesOf = (lines) => lines.filter((line) => line !== '' && line !== HEADER && !isRow(line)); // words, for people
 
 export class Board {
-  constructor({ image, feed, sensor = {}, stock = [], eeprom }) {
-    this.hex = readFileSync(image, 'utf8');
+  constructor({ program, feed, sensor = {}, stock = [], eeprom }) {
+    this.program = program;
     this.stock = stock;
     this.int1Cut = false;
     this.lines = [];
     this.resets = 0;
-    this.build({ hex: this.hex, stock, eeprom });
+    this.build({ program, stock, eeprom });
     this.sensor = new Adxl345({ ...sensor, clock: this.clock, feed, onInt1: () => this.wireInt1() });
     this.wires = this.wireUp();
     this.script = [];
@@ -51,7 +50,7 @@ export class Board {
     this.resets++;
     this.lines.push(...this.uno.lines, ...(this.uno.line ? [this.uno.line] : []));
     const { slept } = this.uno;
-    this.build({ hex: this.hex, before: this.uno, mcusr: cause, stock: this.stock });
+    this.build({ program: this.program, before: this.uno, mcusr: cause, stock: this.stock });
     this.uno.slept = slept;
     this.sensor.moveTo(this.clock);
     this.wires = this.wireUp();

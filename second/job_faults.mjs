@@ -1,7 +1,7 @@
 // One fault, in both simulators at the same time: the same words, the same counters, and the same rows.
-import { Board, rowsOf, notesOf } from './board.mjs';
+import { rowsOf, notesOf } from './board.mjs';
 import { PASSES_MS, compareRows, compareWords } from './compare.mjs';
-import { OUT, simrun } from './programs.mjs';
+import { OUT, boardOf, simrun } from './programs.mjs';
 import { feedOf, writePiece } from './streams.mjs';
 import { MCUSR } from './uno.mjs';
 
@@ -107,7 +107,7 @@ export function run(job) {
   const after = fault.at ?? afterSample(before.served, AT_MS, rate, AFTER_SAMPLE[rate]);
   const at = fault.steady ? steadyMoment(base, ask, fault, after, rate) : after;
   const first = inSimrun(base, ask, fault, at, rate);
-  const board = new Board({ image: job.image, feed: feedOf(first.served, 0.4e6 / rate), sensor: job.sensor });
+  const board = boardOf({ image: job.image, feed: feedOf(first.served, 0.4e6 / rate), sensor: job.sensor });
   for (const [when, line] of first.script) board.type(when, line);
   fault.here(board, at);
   board.run(MS);

@@ -1,6 +1,7 @@
 // What the data sheet leaves open, both ways: whichever part it is, no row is wrong or comes twice.
 import { AS_BUILT } from './adxl345.mjs';
-import { Board, rowsOf, notesOf } from './board.mjs';
+import { rowsOf, notesOf } from './board.mjs';
+import { boardOf } from './programs.mjs';
 
 // each is another answer than AS_BUILT's (adxl345.mjs quotes the text)
 export const READINGS = {
@@ -48,7 +49,7 @@ const unique = () => { let n = 0; return () => { n++; return [(n % 61) - 30, ((n
 export function run(job) {
   const { stampsMs = 0, mayFault = null, ...reading } = { ...READINGS[job.reading] };
   for (const key of Object.keys(reading)) if (!(key in AS_BUILT)) throw new Error(`${job.reading}: no reading is called ${key}`);
-  const board = new Board({ image: job.image, feed: unique(), sensor: { reading, ...job.sensor } });
+  const board = boardOf({ image: job.image, feed: unique(), sensor: { reading, ...job.sensor } });
   if (job.rate !== 100) board.type(200, 'stop').type(300, 'baud 500000').type(400, `rate ${job.rate}`).type(500, 'go');
   EVENTS[job.event](board, EVENT_MS);
   board.run(END_MS);

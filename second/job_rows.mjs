@@ -1,8 +1,8 @@
 // One run: an image, a filter, a rate, a piece of a stream. The same samples and typed lines in avr8js, in simrun and on the PC.
 import { writeFileSync } from 'node:fs';
-import { Board, rowsOf, notesOf } from './board.mjs';
+import { rowsOf, notesOf } from './board.mjs';
 import { PASSES_MS, compareRows, compareWords, thinned, beforeFault, stampSpread } from './compare.mjs';
-import { OUT, simrun, pipeline, native } from './programs.mjs';
+import { OUT, boardOf, simrun, pipeline, native } from './programs.mjs';
 import { feedOf, readCsv, writePiece } from './streams.mjs';
 
 export const GO_MS = 500;
@@ -61,7 +61,7 @@ export function run(job) {
   writePiece(`${base}.csv`, job.stream, { rate: job.rate, offset: job.offset, count: Math.ceil(ms / 1000 * job.rate) + 20 });
   const script = scriptOf(job);
   const first = simrun(base, { elf: job.image.replace('.hex', '.elf'), stream: `${base}.csv`, ms, script, simrun: job.simrun });
-  const board = new Board({ image: job.image, feed: feedOf(first.served, 0.4e6 / job.rate), sensor: job.sensor });
+  const board = boardOf({ image: job.image, feed: feedOf(first.served, 0.4e6 / job.rate), sensor: job.sensor });
   for (const [at, line] of script) board.type(at, line);
   board.run(ms);
   const rows = rowsOf(board.output), notes = notesOf(board.output);
@@ -83,7 +83,7 @@ export function runWhole(job) {
   const base = `${OUT}/run-${process.pid}`;
   const stream = `sim/streams/${job.stream}.csv`;
   const first = simrun(base, { elf: job.image.replace('.hex', '.elf'), stream, ms: job.ms });
-  const board = new Board({ image: job.image, feed: feedOf(first.served, 4000) });
+  const board = boardOf({ image: job.image, feed: feedOf(first.served, 4000) });
   board.run(job.ms);
   const rows = rowsOf(board.output);
   const count = job.stream.includes('gaps') ? beforeFault(rows).length : readCsv(stream).length;

@@ -1,9 +1,9 @@
 // A person at the board: what is typed, and that both simulators' boards answer alike.
 import { readFileSync, rmSync } from 'node:fs';
-import { Board, rowsOf, notesOf } from './board.mjs';
+import { rowsOf, notesOf } from './board.mjs';
 import { compareRows, compareWords } from './compare.mjs';
 import { ROWS_AT_THE_END } from './job_rows.mjs';
-import { OUT, simrun } from './programs.mjs';
+import { OUT, boardOf, simrun } from './programs.mjs';
 import { feedOf } from './streams.mjs';
 import { MCUSR } from './uno.mjs';
 
@@ -48,7 +48,7 @@ export function run(job) {
   const elf = job.image.replace('.hex', '.elf');
   const first = simrun(base, { elf, stream: STREAM, ms: session.ms, script: session.script, faults, options, simrun: job.simrun });
   const sensor = { selfTest: session.selfTest, clockPpm: session.ppm ?? 0, ...job.sensor };
-  const board = new Board({ image: job.image, feed: feedOf(first.served, 1000), sensor });
+  const board = boardOf({ image: job.image, feed: feedOf(first.served, 1000), sensor });
   for (const [at, line] of session.script) board.type(at, line);
   if (session.resetAt) board.at(session.resetAt, () => board.reset(MCUSR.external));
   board.run(session.ms);

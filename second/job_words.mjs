@@ -1,6 +1,7 @@
 // The whole words of fault lines, at both addresses; and avr8js as it is, without our repair of its USART.
 import { readFileSync } from 'node:fs';
-import { Board, rowsOf, notesOf } from './board.mjs';
+import { rowsOf, notesOf } from './board.mjs';
+import { boardOf } from './programs.mjs';
 import { feedOf, readCsv } from './streams.mjs';
 
 const hex = (value) => `0x${value.toString(16).toUpperCase().padStart(2, '0')}`;
@@ -17,7 +18,7 @@ function expectedLine(number, values) {
 }
 
 function identityAt(job, typedMs) {
-  const board = new Board({ image: job.image, feed: () => [0, 0, 256], sensor: { address: job.address, identity: 0xe6, ...job.sensor } });
+  const board = boardOf({ image: job.image, feed: () => [0, 0, 256], sensor: { address: job.address, identity: 0xe6, ...job.sensor } });
   board.type(typedMs, 'status').run(700);
   return notesOf(board.output).filter((note) => note.startsWith('# fault')).join(' / ');
 }
@@ -42,7 +43,7 @@ export const WORDED_FAULTS = Object.keys(BEFALLS).map(Number);
 
 export function runFaultWords(job) {
   const samples = readCsv('sim/streams/rest-2lsb.csv');
-  const board = new Board({ image: job.image, feed: feedOf(samples, Infinity), sensor: { address: job.address, ...job.sensor } });
+  const board = boardOf({ image: job.image, feed: feedOf(samples, Infinity), sensor: { address: job.address, ...job.sensor } });
   BEFALLS[job.fault](board);
   board.run(2200);
   const said = notesOf(board.output).filter((note) => note.startsWith('# fault'));
@@ -54,7 +55,7 @@ export function runFaultWords(job) {
 // D1: whatever the simulator makes of a write of UCSR0A, the firmware sends its rows
 export function runStockUsart(job) {
   const samples = readCsv('sim/streams/rest-2lsb.csv');
-  const board = new Board({ image: job.image, feed: feedOf(samples, Infinity), stock: ['usart'] });
+  const board = boardOf({ image: job.image, feed: feedOf(samples, Infinity), stock: ['usart'] });
   board.run(1200);
   const rows = rowsOf(board.output).length;
   return { rows, different: 0, why: rows >= 100 && board.resets === 0 ? null : `${rows} rows in 1.2 s and ${board.resets} watchdog resets` };

@@ -1,8 +1,9 @@
 // The project's own programs: simrun (the first simulator) and pipeline_replay, native_replay (the PC).
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
-import { rowsOf } from './board.mjs';
+import { Board, rowsOf } from './board.mjs';
 import { readCsv } from './streams.mjs';
+import { varied } from './varied.mjs';
 
 export const OUT = 'build/second';
 const SIMRUN = process.env.SECOND_SIMRUN ?? 'build/sim/simrun';
@@ -13,21 +14,6 @@ function output(program, args) {
   } catch (error) {
     throw new Error(`${program} ${args.join(' ')}: ${typeof error.status !== 'number' ? error.message : `status ${error.status}: ${error.stderr.trim()}`}`);
   }
-}
-
-// A row that is measured again, because the sensor runs faster than the stream, has noise of its own: as feed_vary in sim/model/feed.h
-function varied(rows, row, repeats) {
-  const atRail = (lsb) => [512, 1024, 2048, 4096].includes(lsb < 0 ? -lsb : lsb + 1);
-  const off = (all) => all.every((lsb) => lsb === -1);
-  const readings = rows[row].slice(1);
-  if (repeats === 0 || off(readings)) return readings;
-  const turn = repeats + row + 1;
-  for (const axis of [turn % 3, (turn + 1) % 3, (turn + 2) % 3]) {
-    const lately = rows.slice(Math.max(0, row - 10), row + 1).map((each) => each[axis + 1]);
-    const now = readings.map((lsb, i) => (i === axis ? lsb + (turn % 2 === 0 ? 1 : -1) : lsb));
-    if (lately.some((lsb) => lsb !== lately[0]) && !atRail(readings[axis]) && !atRail(now[axis]) && !off(now)) return now;
-  }
-  return readings;
 }
 
 // When the first simulator's sensor measured, and which row of the stream: [t_us, x, y, z] with the stream's own readings, so that
@@ -44,6 +30,19 @@ function servedOf(path, stream) {
     return [Number(fields[t]), ...varied(rows, row, repeats)];
   });
 }
+
+function loadHex(text) {
+  const program = new Uint16Array(0x4000);
+  const bytes = new Uint8Array(program.buffer);
+  for (const line of text.split('\n').filter((l) => l[0] === ':')) {
+    const record = Buffer.from(line.trim().slice(1), 'hex');
+    if (record[3] === 0) record.copy(bytes, record.readUInt16BE(1), 4, 4 + record[0]);
+  }
+  return program;
+}
+
+// a board that runs this image (Intel hex)
+export const boardOf = ({ image, ...rest }) => new Board({ ...rest, program: loadHex(readFileSync(image, 'utf8')) });
 
 // script: [ms, line] typed; faults: WHEN:KIND as simrun takes them. {lines, served: [t_us, x, y, z]}
 export function simrun(base, { elf, stream, ms, script = [], faults = [], options = [], simrun = SIMRUN }) {

@@ -12,20 +12,11 @@ const SMCR = 0x53, SE = 1, MCUSR_ADDRESS = 0x54, UCSR0A = 0xc0, UCSR0B = 0xc1, U
 const RXC = 0x80, UDRE = 0x20, RXEN = 0x10;
 const RAM = 0x100;
 
-function loadHex(text) {
-  const program = new Uint16Array(0x4000);
-  const bytes = new Uint8Array(program.buffer);
-  for (const line of text.split('\n').filter((l) => l[0] === ':')) {
-    const record = Buffer.from(line.trim().slice(1), 'hex');
-    if (record[3] === 0) record.copy(bytes, record.readUInt16BE(1), 4, 4 + record[0]);
-  }
-  return program;
-}
-
 export class Uno {
-  // stock: avr8js as it is: 'usart' and 'twi' with their defects. before: the UNO that is reset, whose RAM, EEPROM and time go on
-  constructor({ hex, eeprom = new avr.EEPROMMemoryBackend(1024), before = null, mcusr = MCUSR.powerOn, stock = [] }) {
-    this.program = loadHex(hex);
+  // program: the flash, 16384 words. stock: avr8js as it is: 'usart' and 'twi' with their defects. before: the UNO that is reset,
+  // whose RAM, EEPROM and time go on
+  constructor({ program, eeprom = new avr.EEPROMMemoryBackend(1024), before = null, mcusr = MCUSR.powerOn, stock = [] }) {
+    this.program = program;
     const cpu = this.cpu = new avr.CPU(this.program, 0x800);
     if (before) {
       cpu.data.set(before.cpu.data.subarray(RAM), RAM);

@@ -1,9 +1,9 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what a group of make targets needs and this machine lacks; prints nothing if nothing is missing.
-# Groups: firmware sim test check flash flashtest arduino bench piocheck papers design tilt live fuzz coverage proof second. Packages come by
+# Groups: firmware sim test check flash flashtest arduino bench piocheck papers design tilt live fuzz coverage proof second demo. Packages come by
 # apt-get, numpy and matplotlib (check: lizard, design: scipy, tilt: tools/pyproject.toml) by pip into build/venv, Unity by tools/deps/get_unity.sh into build/unity
-# (UNITY_DIR=folder: use that one), avr8js by npm into build/second. Uses sudo only when not root.
-# Ends with 1 on failure; with 3 if only the group second is requested and Node or avr8js is absent, too old, or npm has no network.
+# (UNITY_DIR=folder: use that one), avr8js by npm into build/second and esbuild into build/web. Uses sudo only when not root.
+# Ends with 1 on failure; with 3 if only the group second or demo is requested and Node, avr8js or esbuild is absent, too old, or npm has no network.
 set -eu
 
 cd "$(dirname "$0")/.."
@@ -17,6 +17,7 @@ want_tilt=no
 want_unity=no
 want_pio=no
 want_avr8js=no
+want_esbuild=no
 pio_requirements='platformio==6.2.0 scons==4.11.1' # the versions that mk/scripts/pio_standins.py stands in for
 pio_venv=build/venv-pio
 fail_status=1 # 3 if what is missing is a reason to skip, not a failure
@@ -171,8 +172,9 @@ collect() {
             fuzz) need_host_compiler; need python3 has python3; need binutils has objcopy ;;
             coverage) need_simulator; need_plots; need_unity; need gcovr has gcovr ;;
             second) want_avr8js=yes; need nodejs has node; need npm has npm ;;
+            demo) want_avr8js=yes; want_esbuild=yes; need nodejs has node; need npm has npm; need python3 has python3 ;;
             proof) need python3 has python3; need frama-c-base has frama-c ;;
-            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof or second" ;;
+            *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof, second or demo" ;;
         esac
     done
     missing=${missing# }
@@ -287,24 +289,25 @@ has_node_of_age() {
     printf '%s\n' "$(node_needed)" "$(node --version | sed 's/^v//')" | sort -C -V
 }
 
-# exactly what the lock file names
-has_avr8js() {
-    [ -d build/second/node_modules/avr8js ] && cmp -s second/package-lock.json build/second/package-lock.installed
+# has_npm FOLDER PACKAGE: exactly what the lock file names
+has_npm() {
+    [ -d "build/$1/node_modules/$2" ] && cmp -s "$1/package-lock.json" "build/$1/package-lock.installed"
 }
 
 npm_out_of_reach='ENOTFOUND|EAI_AGAIN|ECONNREFUSED|ECONNRESET|ETIMEDOUT|ENETUNREACH|EHOSTUNREACH|ERR_SOCKET_TIMEOUT|E403|E407|E50[0-9]'
 
-install_avr8js() {
-    echo "deps: installing with npm into build/second: avr8js"
-    mkdir -p build/second
-    cp second/package.json second/package-lock.json build/second/
-    if ! (cd build/second && npm ci --ignore-scripts --no-audit --no-fund) > "$log" 2>&1; then
+# install_npm FOLDER PACKAGE
+install_npm() {
+    echo "deps: installing with npm into build/$1: $2"
+    mkdir -p "build/$1"
+    cp "$1/package.json" "$1/package-lock.json" "build/$1/"
+    if ! (cd "build/$1" && npm ci --ignore-scripts --no-audit --no-fund) > "$log" 2>&1; then
         # only an unreachable registry is a reason to skip: what npm rejects (EINTEGRITY: not what the lock file names) is a failure
         grep -Eq 'EINTEGRITY|EUSAGE' "$log" || ! grep -Eq "$npm_out_of_reach" "$log" && fail_status=1
-        fail "cannot install avr8js ($(grep -i 'npm err' "$log" | head -n 1)): check the network and npm's registry, and\
- second/package-lock.json; log in $log"
+        fail "cannot install $2 ($(grep -i 'npm err' "$log" | head -n 1)): check the network and npm's registry, and\
+ $1/package-lock.json; log in $log"
     fi
-    cp second/package-lock.json build/second/package-lock.installed
+    cp "$1/package-lock.json" "build/$1/package-lock.installed"
 }
 
 install_unity() {
@@ -317,10 +320,10 @@ install_unity() {
     tools/deps/get_unity.sh build/unity
 }
 
-[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof, second)"
+[ $# -gt 0 ] || fail "usage: tools/deps.sh GROUP... (firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof, second, demo)"
 collect "$@"
 mkdir -p build
-if [ "$*" = second ]; then
+if [ "$*" = second ] || [ "$*" = demo ]; then
     fail_status=3
 fi
 if [ -n "$missing" ]; then
@@ -349,6 +352,9 @@ fi
 if [ $want_avr8js = yes ] && ! has_node_of_age; then
     fail "Node $(node --version) is too old, $(node_needed) or later is needed (second/package.json): install a newer nodejs"
 fi
-if [ $want_avr8js = yes ] && ! has_avr8js; then
-    install_avr8js
+if [ $want_avr8js = yes ] && ! has_npm second avr8js; then
+    install_npm second avr8js
+fi
+if [ $want_esbuild = yes ] && ! has_npm web esbuild; then
+    install_npm web esbuild
 fi

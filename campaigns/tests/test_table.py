@@ -54,7 +54,7 @@ SCRIPTS = [
     packages("test_nav_image", "build/sim/simrun", "nav_images"), packages("test_plot_run"), packages("test_robust", "build/host/pipeline_replay"),
     packages("test_design"), packages("test_design_command"), packages("test_design_refusals"), packages("test_synthesised"),
     packages("test_filter_pages"), packages("test_variable_structure"), packages("test_variable_structure_flight"),
-    packages("test_variable_structure_page"),
+    packages("test_variable_structure_page"), packages("test_demo", "system_images", "demo_built"), packages("test_demo_page", "demo_built"),
 ]
 NOT_HERE = {"test_planted", "test_platformio"}  # make check and make piocheck run these
 

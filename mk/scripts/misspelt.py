@@ -10,7 +10,7 @@ import sys
 
 # where a makefile uses, sets or explains a variable
 USED = re.compile(r"\$[({](?:value |origin )?([A-Z]\w*)|^(?:[\w %-]+:)? ?(?:export )?([A-Z]\w*) *[:?+]?=|(?<![-\w])([A-Z]\w*)=", re.MULTILINE)
-FOLDERS = ("mk", "checks", "nav", "second", "tools", "campaigns", "host_tests")
+FOLDERS = ("mk", "checks", "nav", "second", "web", "tools", "campaigns", "host_tests")
 OF_MAKE = {"SHELL", "MAKEFLAGS"}
 # names in other projects
 ELSEWHERE = {"CC": "HOST_CC", "CXX": "HOST_CXX"}

@@ -7,15 +7,15 @@ another origin.
 import contextlib
 import http.server
 import json
-import pathlib
 import secrets
 import threading
 import time
 import urllib.parse
 
 from tilt.errors import TiltError
+from tilt.whole_page import whole
 
-PAGE = pathlib.Path(__file__).with_name("page") / "live.html"
+PAGE = "live.html"
 ADDRESS = "127.0.0.1"
 ALIVE_S = 5.0      # keep-alive, by which a closed browser is noticed
 BATCH_S = 0.02     # lines that arrive within this time are one event
@@ -146,7 +146,7 @@ class Server(http.server.ThreadingHTTPServer):
         self.token = secrets.token_urlsafe(18)
         self.ending = threading.Event()
         self.streams, self.streams_changed = 0, threading.Condition()
-        self.page = PAGE.read_bytes()
+        self.page = whole(PAGE).encode("utf-8")
         try:
             super().__init__((ADDRESS, port), Handler)
         except (OSError, OverflowError) as error:

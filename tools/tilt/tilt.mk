@@ -3,11 +3,14 @@ tilt:
 	@sh tools/deps.sh tilt
 	@echo "tilt: build/venv/bin/tilt --help"
 
-## pictures: take docs/live.png again, from the firmware as it is in the simulator (30 s; needs Chromium)
+## pictures: take docs/live.png and the demo's pictures again, from the firmware as it is (1 minute; needs Chromium)
 pictures: $(U)/firmware.elf $(S)/simrun
 	@sh tools/deps.sh tilt
 	@sh tools/deps.sh live
 	@$(PY) host_tests/tools/tilt/live_picture.py
+	@sh tools/deps.sh demo
+	@$(MAKE) demo_built
+	@$(PY) host_tests/tools/web/demo_picture.py
 
 .PHONY: tilt pictures
 

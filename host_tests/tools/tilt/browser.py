@@ -129,16 +129,16 @@ class Page:
         """Waits for an expression to be true; its value. Failed with the page's figures when it does not become so."""
         end = time.monotonic() + seconds
         while True:
-            value = self.value(f"typeof tiltLive !== 'undefined' && ({expression})")
+            value = self.value(f"typeof tiltPage !== 'undefined' && ({expression})")
             if value:
                 return value
             if time.monotonic() > end:
-                figures = self.value("typeof tiltLive === 'undefined' ? 'no page' : JSON.stringify(tiltLive.figures())")
+                figures = self.value("typeof tiltPage === 'undefined' ? 'no page' : JSON.stringify(tiltPage.figures())")
                 raise Failed(f"not within {seconds} s: {expression}; {figures}\n{self.console()}")
             time.sleep(0.05)
 
     def figures(self):
-        return self.value("tiltLive.figures()")
+        return self.value("tiltPage.figures()")
 
     def console(self):
         """What the page threw, logged or was refused, a line each."""
@@ -165,7 +165,7 @@ class Page:
         for kind in ("keyDown", "keyUp"):
             text = {"text": "\r"} if key == "Enter" and kind == "keyDown" else {}
             self.call("Input.dispatchKeyEvent", type=kind, key=key, code=code or key,
-                      windowsVirtualKeyCode={"Tab": 9, "Enter": 13, " ": 32, "ArrowRight": 39, "ArrowUp": 38}.get(key, 0), **text)
+                      windowsVirtualKeyCode={"Tab": 9, "Enter": 13, " ": 32, "Home": 36, "ArrowRight": 39, "ArrowUp": 38}.get(key, 0), **text)
 
     def type(self, text):
         self.call("Input.insertText", text=text)

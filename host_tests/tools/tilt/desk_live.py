@@ -27,7 +27,7 @@ class TestClock(unittest.TestCase):
         with Browser() as browser, watched(talk) as (server, _):
             page = browser.open(server.address)
             self.assertTrue(talk.over.wait(DEADLINE_S))
-            page.until(f"tiltLive.figures().rows >= {COUNT}")
+            page.until(f"tiltPage.figures().rows >= {COUNT}")
             figures = page.figures()
         print(f"first picture after {figures['firstPictureMs']:.0f} ms of the page")
         self.assertLessEqual(figures["firstPictureMs"], FIRST_PICTURE_MS)  # from the begin of the page's loading
@@ -44,7 +44,7 @@ class TestClock(unittest.TestCase):
             live = stack.enter_context(program([sys.executable, "-m", "tilt", "live", port, "--no-browser", "--baud", 500000],
                                                 stdout=subprocess.PIPE))
             page = browser.open(live.stdout.readline().strip())
-            page.until("tiltLive.figures().firstPictureMs")
+            page.until("tiltPage.figures().firstPictureMs")
             took_s, figures = time.monotonic() - began, page.figures()
         print(f"simrun: picture {took_s:.2f} s after the command was started, {figures['firstPictureMs']:.0f} ms of the page")
         self.assertLessEqual(figures["firstPictureMs"], FIRST_PICTURE_MS)

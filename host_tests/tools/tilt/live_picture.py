@@ -29,9 +29,9 @@ def main():
         port = re.search(r"/dev/\S+", sim.stderr.readline()).group()
         live = stack.enter_context(program([sys.executable, "-m", "tilt", "live", port, "--no-browser"], stdout=subprocess.PIPE))
         page = stack.enter_context(Browser()).open(live.stdout.readline().strip())
-        page.until("tiltLive.figures().filters.length")
+        page.until("tiltPage.figures().filters.length")
         page.value(f"document.querySelector('input[value={ROBUST}]').click()")
-        page.until(f"tiltLive.figures().rows >= {ROWS}")
+        page.until(f"tiltPage.figures().rows >= {ROWS}")
         page.picture(PICTURE)
     print(f"{PICTURE} written")
 

@@ -11,11 +11,12 @@ from tilt import serving
 from tilt.board import Board
 from tilt.feed import Feed
 from tilt.port import Port
+from tilt.whole_page import WEB
 from browser import Browser
 from fake_board import BANNER, HEADER, FakeBoard, row
 
 FILTERS = (DEFAULT, PLAIN, ROBUST, LIGHT)
-PAGE_FILE = serving.PAGE.resolve().as_uri()
+PAGE_FILE = (WEB / serving.PAGE).as_uri()
 
 
 class Talk:

@@ -27,6 +27,7 @@ from tilt.board import Board  # noqa: E402
 from tilt.errors import TiltError  # noqa: E402
 from tilt.feed import Feed, Lines  # noqa: E402
 from tilt.port import Port  # noqa: E402
+from tilt.whole_page import whole  # noqa: E402
 from fake_board import BANNER, DEADLINE_S, HEADER, FakeBoard, row, rows, until  # noqa: E402
 
 
@@ -117,9 +118,9 @@ class TestServer(unittest.TestCase):
     def test_page_is_the_file_and_may_load_nothing(self):
         answer = self.ask("GET", "/")
         self.assertEqual(answer.status, 200)
-        self.assertEqual(answer.read(), serving.PAGE.read_bytes())
+        page = answer.read().decode("utf-8")
+        self.assertEqual(page, whole(serving.PAGE))
         self.assertEqual(answer.headers["X-Frame-Options"], "DENY")
-        page = serving.PAGE.read_text(encoding="utf-8")
         self.assertIn("default-src 'none'", page)
         outside = re.findall(r"""(?:https?:)?//[a-z0-9.-]+\.[a-z]+|(?:src|href|url|import)\s*[=(]\s*["']?(?!data:|#)[^"')> ]+""", page)
         self.assertEqual([each for each in outside if each != "url(#round"], [])

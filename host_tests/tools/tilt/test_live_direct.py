@@ -43,7 +43,7 @@ class TestDirect(Case):
         page = self.opened(PAGE_FILE, before=SPEAKS)
         self.assertFalse(page.value("document.getElementById('direct').hidden"))
         page.value("document.getElementById('baud').value = '250000'; document.getElementById('connect').click()")
-        page.until("opened.length === 1 && tiltLive.figures().kind === 'up'")
+        page.until("opened.length === 1 && tiltPage.figures().kind === 'up'")
         self.assertEqual(page.value("opened"), [250000])
         return page
 
@@ -53,11 +53,11 @@ class TestDirect(Case):
     def test_rows_and_commands(self):
         page = self.connected()
         self.say(page, b"5,0,0,256,0,0,1000,0,0,0\n" + BANNER + HEADER + rows(0, 30))
-        page.until("tiltLive.figures().rows === 30 && tiltLive.figures().firstPictureMs")
+        page.until("tiltPage.figures().rows === 30 && tiltPage.figures().firstPictureMs")
         page.until("typed.length === 2")
         self.assertEqual(page.value("typed"), ["filter\n", "filter ?\n"])
         self.say(page, f"# filter: {DEFAULT} {PLAIN}\n# filter {PLAIN}\n".encode() + rows(30, 60))
-        page.until(f"tiltLive.figures().filter === '{PLAIN}'")
+        page.until(f"tiltPage.figures().filter === '{PLAIN}'")
         page.value(f"document.querySelector('input[value={DEFAULT}]').click()")
         page.until("typed.length === 3")
         self.assertEqual(page.value("typed[2]"), f"filter {DEFAULT}\n")
@@ -65,37 +65,37 @@ class TestDirect(Case):
 
     def test_baud_is_not_changed_under_the_browser(self):
         page = self.connected()
-        page.value("tiltLive.app.send('baud 9600')")
+        page.value("tiltPage.send('baud 9600')")
         page.until("document.getElementById('log').innerText.includes('baud 9600: not sent: ')")
         self.assertEqual(page.value("typed"), [])
 
     def test_unplugged_and_plugged_in_again(self):
         page = self.connected()
         self.say(page, HEADER + rows(0, 30))
-        page.until("tiltLive.figures().rows === 29 || tiltLive.figures().rows === 30")
+        page.until("tiltPage.figures().rows === 29 || tiltPage.figures().rows === 30")
         page.value("port.unplug()")
-        self.assertIn("plug it in again", page.until("tiltLive.figures().kind === 'wait' && tiltLive.figures().words"))
+        self.assertIn("plug it in again", page.until("tiltPage.figures().kind === 'wait' && tiltPage.figures().words"))
         page.value("port.open = MockOpen = Object.getPrototypeOf(port).open; "
                    "port.dispatchEvent(new Event('connect')); navigator.serial.dispatchEvent(Object.defineProperty(new Event('connect'), "
                    "'target', { value: port }))")
-        page.until("opened.length === 2 && tiltLive.figures().kind === 'up'")
+        page.until("opened.length === 2 && tiltPage.figures().kind === 'up'")
         self.say(page, b"\n" + BANNER + HEADER + row(0) + rows(1, 12))
-        page.until("tiltLive.figures().rows >= 41")
+        page.until("tiltPage.figures().rows >= 41")
         self.assertEqual(page.figures()["lost"], 0)
 
     def test_disconnect_gives_the_port_back(self):
         page = self.connected()
         page.value("document.getElementById('connect').click()")
-        page.until("tiltLive.figures().words === 'not connected' && port.readable === null")
+        page.until("tiltPage.figures().words === 'not connected' && port.readable === null")
 
     def test_port_in_use_is_said(self):
         page = self.opened(PAGE_FILE, before=SPEAKS)
         page.value("port.busy = true; document.getElementById('connect').click()")
-        self.assertIn("in use by another program", page.until("tiltLive.figures().kind === 'down' && tiltLive.figures().words"))
+        self.assertIn("in use by another program", page.until("tiltPage.figures().kind === 'down' && tiltPage.figures().words"))
 
     def test_browser_without_webserial_is_told(self):
         page = self.opened(PAGE_FILE, before="delete Navigator.prototype.serial")
-        self.assertIn("tilt live PORT", page.until("tiltLive.figures().words"))
+        self.assertIn("tilt live PORT", page.until("tiltPage.figures().words"))
 
 
 if __name__ == "__main__":

@@ -20,10 +20,10 @@ class TestServed(Case):
         talk = Talk()
         with watched(talk) as (server, _):
             page = self.opened(server.address)
-            self.assertEqual(page.until("tiltLive.figures().filters.length && tiltLive.figures().filters"), list(FILTERS))
+            self.assertEqual(page.until("tiltPage.figures().filters.length && tiltPage.figures().filters"), list(FILTERS))
             self.assertEqual(talk.commands, ["filter", "filter ?"])
             page.value(f"document.querySelector('input[value={ROBUST}]').click()")
-            page.until(f"tiltLive.figures().filter === '{ROBUST}'")
+            page.until(f"tiltPage.figures().filter === '{ROBUST}'")
             self.assertEqual((talk.filter, talk.commands[2:]), (ROBUST, [f"filter {ROBUST}"]))
             self.assertTrue(page.value(f"document.querySelector('input[value={ROBUST}]').checked"))
             self.lights(page, talk)
@@ -43,27 +43,27 @@ class TestServed(Case):
         talk = Talk()
         with watched(talk) as (server, _):
             page = self.opened(server.address)
-            page.until("tiltLive.figures().rows > 5")
+            page.until("tiltPage.figures().rows > 5")
             for bit in (protocol.GATED, protocol.SILENCE, protocol.ROLL_UNDEFINED):
                 name, sent = protocol.FLAG_NAMES[bit], []
                 talk.flags = lambda number, bit=bit, sent=sent: sent.append(number) or bit
-                page.until(f"tiltLive.figures().lamps[{name!r}].lit")
+                page.until(f"tiltPage.figures().lamps[{name!r}].lit")
                 self.assertEqual({each for each, lamp in page.figures()["lamps"].items() if lamp["lit"]}, {name})
                 talk.flags = lambda number: 0
-                page.until(f"!tiltLive.figures().lamps[{name!r}].lit && tiltLive.figures().lamps[{name!r}].count >= {len(sent)}")
+                page.until(f"!tiltPage.figures().lamps[{name!r}].lit && tiltPage.figures().lamps[{name!r}].count >= {len(sent)}")
                 self.assertEqual(page.figures()["lamps"][name]["count"], len(sent))
 
     def test_by_the_keyboard_alone(self):
         talk = Talk()
         with watched(talk) as (server, _):
             page = self.opened(server.address)
-            page.until("tiltLive.figures().filters.length")
+            page.until("tiltPage.figures().filters.length")
             for _ in range(12):
                 page.press("Tab")
                 if page.value("document.activeElement.name") == "filter":
                     break
             page.press("ArrowRight")
-            page.until(f"tiltLive.figures().filter === '{PLAIN}'")
+            page.until(f"tiltPage.figures().filter === '{PLAIN}'")
             for _ in range(4):
                 page.press("Tab")
                 if page.value("document.activeElement.id") == "line":
@@ -82,7 +82,7 @@ class TestServed(Case):
             if command == f"filter {PLAIN}" else talk.reply_before(command)
         with watched(talk) as (server, _):
             page = self.opened(server.address)
-            page.until("tiltLive.figures().filters.length")
+            page.until("tiltPage.figures().filters.length")
             page.value(f"document.querySelector('input[value={PLAIN}]').click()")
             page.until(f"document.getElementById('log').innerText.includes('refused 5: {PLAIN}')")
             page.until(f"document.querySelector('input[value={DEFAULT}]').checked")
@@ -91,27 +91,27 @@ class TestServed(Case):
         talk = Talk()
         with watched(talk) as (server, _):
             page = self.opened(server.address)
-            page.until("tiltLive.figures().filters.length")
+            page.until("tiltPage.figures().filters.length")
             talk.filter = LIGHT
             talk.say("# settings: as saved")
-            page.until(f"tiltLive.figures().filter === '{LIGHT}'")
+            page.until(f"tiltPage.figures().filter === '{LIGHT}'")
             talk.say(f"# filter {PLAIN}: {PLAIN} {LIGHT} {ROBUST}")
-            page.until(f"tiltLive.figures().filters.join() === '{PLAIN},{LIGHT},{ROBUST}' && tiltLive.figures().filter === '{PLAIN}'")
+            page.until(f"tiltPage.figures().filters.join() === '{PLAIN},{LIGHT},{ROBUST}' && tiltPage.figures().filter === '{PLAIN}'")
             talk.say(f"# filter {LIGHT}")
             talk.say(f"# refused 4: filter is one of {LIGHT} {PLAIN}")
-            page.until(f"tiltLive.figures().filters.join() === '{LIGHT},{PLAIN}' && tiltLive.figures().filter === '{LIGHT}'")
+            page.until(f"tiltPage.figures().filters.join() === '{LIGHT},{PLAIN}' && tiltPage.figures().filter === '{LIGHT}'")
 
     def test_picture_moves_and_stands_still_in_a_pause(self):
         with watched(Talk()) as (server, _):
             page = self.opened(server.address)
-            page.until("tiltLive.figures().firstPictureMs")
+            page.until("tiltPage.figures().firstPictureMs")
             shown = "document.getElementById('pitch').toDataURL()"
             first = page.value(shown)
             page.until(f"{shown} !== {json.dumps(first)}")
             paused_ms = page.value("document.getElementById('pause').click(), performance.now()")
-            page.until(f"tiltLive.app.drawnMs > {paused_ms}")
-            still, rows_then = page.value(f"[{shown}, tiltLive.figures().rows]")
-            page.until(f"tiltLive.figures().rows > {rows_then + 30}")
+            page.until(f"tiltPage.drawnMs > {paused_ms}")
+            still, rows_then = page.value(f"[{shown}, tiltPage.figures().rows]")
+            page.until(f"tiltPage.figures().rows > {rows_then + 30}")
             self.assertEqual(page.value(shown), still)
             page.value("document.getElementById('pause').click()")
             page.until(f"{shown} !== {json.dumps(still)}")
@@ -120,10 +120,10 @@ class TestServed(Case):
         with watched(Talk()) as (server, _):  # roll is 0.45 degrees in each row, raw roll 0.448
             page = self.opened(server.address)
             page.value("document.getElementById('scale').value = '15'; document.getElementById('scale').dispatchEvent(new Event('change'))")
-            page.until("tiltLive.figures().rows > 150")
+            page.until("tiltPage.figures().rows > 150")
             heights = page.value("""(() => {
               const canvas = document.getElementById('roll'), pen = canvas.getContext('2d'), found = [];
-              const [r, g, b] = tiltLive.app.colours.filtered.match(/[0-9]+/g).map(Number);
+              const [r, g, b] = tiltPage.colours.filtered.match(/[0-9]+/g).map(Number);
               const pixels = pen.getImageData(canvas.width - 30, 0, 1, canvas.height).data;
               for (let y = 0; y < canvas.height; y++)
                 if (Math.abs(pixels[4 * y] - r) + Math.abs(pixels[4 * y + 1] - g) + Math.abs(pixels[4 * y + 2] - b) < 20) found.push(y);
@@ -137,28 +137,28 @@ class TestServed(Case):
     def test_unplugged_is_said_and_the_end_too(self):
         with watched(Talk()) as (server, fake):
             page = self.opened(server.address)
-            page.until("tiltLive.figures().rows > 20")
+            page.until("tiltPage.figures().rows > 20")
             fake.unplug()
-            self.assertIn("waiting for it", page.until("tiltLive.figures().kind === 'wait' && tiltLive.figures().words"))
+            self.assertIn("waiting for it", page.until("tiltPage.figures().kind === 'wait' && tiltPage.figures().words"))
             page.until("document.getElementById('rate').textContent === '0.0'")  # nothing comes: no rate is shown
-            page.value("tiltLive.app.send('go')")
+            page.value("tiltPage.send('go')")
             page.until("document.getElementById('log').innerText.includes('go: not sent: ')")
-        self.assertIn("tilt live has ended", page.until("tiltLive.figures().kind === 'down' && tiltLive.figures().words"))
+        self.assertIn("tilt live has ended", page.until("tiltPage.figures().kind === 'down' && tiltPage.figures().words"))
 
     def test_wrong_token_and_broken_lines_are_said(self):
         with watched(Talk()) as (server, _):
             page = self.opened(server.address.partition("#")[0] + "#guessed")
-            self.assertIn("refused", page.until("tiltLive.figures().kind === 'wait' && tiltLive.figures().words"))
+            self.assertIn("refused", page.until("tiltPage.figures().kind === 'wait' && tiltPage.figures().words"))
             page = self.opened(server.address)
-            page.until("tiltLive.figures().rows > 5")
+            page.until("tiltPage.figures().rows > 5")
             server.feed.put("lines", b"12,\xff\xfe\x80\n" * 3)
-            page.until("tiltLive.figures().broken === 3")
+            page.until("tiltPage.figures().broken === 3")
             page.until("document.getElementById('broken').textContent === '3'")
 
     def test_nothing_sticks_out_of_a_narrow_window(self):
         with watched(Talk()) as (server, _):
             page = self.opened(server.address, size=(390, 800))
-            page.until("tiltLive.figures().filters.length")
+            page.until("tiltPage.figures().filters.length")
             self.assertLessEqual(page.value("document.documentElement.scrollWidth"), 390)
 
     def test_light_and_dark_are_legible(self):
@@ -166,7 +166,7 @@ class TestServed(Case):
             page = self.opened(server.address)
             for theme in ("light", "dark"):
                 page.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
-                page.until(f"tiltLive.app.isDark() === {json.dumps(theme == 'dark')}")
+                page.until(f"tiltPage.isDark() === {json.dumps(theme == 'dark')}")
                 ink, dim, card = page.value("""['ink', 'dim', 'card'].map((name) => {
                   const pen = document.createElement('canvas').getContext('2d'), probe = document.createElement('b');
                   document.body.append(probe);
@@ -178,7 +178,7 @@ class TestServed(Case):
                 self.assertGreaterEqual(contrast(ink, card), 7.0)  # WCAG 2: AAA for text, AA for what is beside it
                 self.assertGreaterEqual(contrast(dim, card), 4.5)
             page.value("document.getElementById('theme').click()")
-            self.assertFalse(page.value("tiltLive.app.isDark()"))
+            self.assertFalse(page.value("tiltPage.isDark()"))
 
 
 def contrast(one, other):

@@ -16,7 +16,7 @@ from live_support import PAGE_FILE, Case  # noqa: E402
 
 # feeds pieces [text, arrival in ms] to a parser of its own; what came out
 PARSE = """((pieces, whole) => {
-  const rows = [], notes = [], protocol = new tiltLive.Protocol({ row: (row) => rows.push(row), note: (text) => notes.push(text) });
+  const rows = [], notes = [], protocol = new Protocol({ row: (row) => rows.push(row), note: (text) => notes.push(text) });
   protocol.begin(whole);
   for (const [text, ms] of pieces) protocol.feed(text, ms);
   return { rows, notes, count: protocol.rows, broken: protocol.broken, lost: protocol.losses.lost, restarts: protocol.restarts,
@@ -150,16 +150,16 @@ class TestParser(Case):
         self.assertEqual(self.lost(times), 2)
 
     def test_flags_have_the_names_of_the_protocol(self):
-        self.assertEqual({bit: name for bit, name, _ in self.page.value("tiltLive.FLAGS")}, protocol.FLAG_NAMES)
+        self.assertEqual({bit: name for bit, name, _ in self.page.value("FLAGS")}, protocol.FLAG_NAMES)
 
     def test_a_pixel_shows_its_extremes(self):
         chance = random.Random(3)
         values = [round(chance.gauss(0, 1), 3) for _ in range(4000)]
         values[1234] = 99.5  # one outlier among 40 rows of a pixel
         found = self.page.value("""((values) => {
-          const history = new tiltLive.History(8192), points = [];
+          const history = new RowHistory(8192), points = [];
           values.forEach((value, n) => history.push({ s: n * 0.01, apart: n === 0, rawRoll: value, roll: 0, rawPitch: 0, pitch: 0, flags: 0 }));
-          tiltLive.eachPixel(history, "rawRoll", 0, values.length, (s) => Math.floor(s / 0.4 + 1e-9), (x, y) => points.push([x, y]));
+          eachPixel(history, "rawRoll", 0, values.length, (s) => Math.floor(s / 0.4 + 1e-9), (x, y) => points.push([x, y]));
           return points; })(""" + json.dumps(values) + ")")
         for x in range(100):
             shown, meant = [y for at, y in found if at == x], values[40 * x:40 * x + 40]
@@ -169,21 +169,21 @@ class TestParser(Case):
 
     def test_line_breaks_where_roll_goes_round_and_where_rows_are_apart(self):
         begins = self.page.value("""(() => {
-          const history = new tiltLive.History(16), begins = [];
+          const history = new RowHistory(16), begins = [];
           [[179, 1], [180, 0], [-179, 0], [-178, 0], [-177, 1]].forEach(([roll, apart], n) =>
             history.push({ s: n, apart, rawRoll: 0, roll, rawPitch: 0, pitch: 0, flags: 0 }));
-          tiltLive.eachPixel(history, "roll", 0, 5, (s) => s, (x, y, anew) => { if (anew) begins.push(y); });
+          eachPixel(history, "roll", 0, 5, (s) => s, (x, y, anew) => { if (anew) begins.push(y); });
           return begins; })()""")
         self.assertEqual(begins, [179, -179, -177])
 
     def test_horizon_turns_against_roll_and_rises_with_pitch(self):
         # x lowered: the gravity reaction has a part along -x, so atan2(-x, ..) is positive and the eye looks down: the horizon goes up (-y)
-        self.assertEqual(self.page.value("tiltLive.horizonTransform(12.345, 7)"), "rotate(-12.35) translate(0 -14.00)")
-        self.assertEqual(self.page.value("tiltLive.horizonTransform(-90, -45.5)"), "rotate(90.00) translate(0 91.00)")
+        self.assertEqual(self.page.value("horizonTransform(12.345, 7)"), "rotate(-12.35) translate(0 -14.00)")
+        self.assertEqual(self.page.value("horizonTransform(-90, -45.5)"), "rotate(90.00) translate(0 91.00)")
 
     def test_history_keeps_the_last_rows(self):
         self.assertEqual(self.page.value("""(() => {
-          const history = new tiltLive.History(8);
+          const history = new RowHistory(8);
           for (let n = 0; n < 20; n++) history.push({ s: n * 0.5, apart: false, rawRoll: n, roll: n, rawPitch: 0, pitch: 0, flags: 0 });
           return [history.first, history.last, history.find(0), history.find(7), history.find(7.1), history.find(99), history.rate()]; })()"""),
                          [12, 9.5, 12, 14, 15, 20, 2])

@@ -39,7 +39,7 @@ class TestRate(unittest.TestCase):
         with Browser() as browser, watched(whole) as (server, _), watched(twin) as (twin_server, _):
             pages = [browser.open(each.address) for each in (server, twin_server)]
             for page in pages:
-                page.until("tiltLive.figures().firstPictureMs")
+                page.until("tiltPage.figures().firstPictureMs")
             for talk in (whole, twin):
                 talk.go_on.set()  # the picture came of the first rows alone
                 self.assertTrue(talk.over.wait(DEADLINE_S))
@@ -65,12 +65,12 @@ class TestRate(unittest.TestCase):
             live = stack.enter_context(program([sys.executable, "-m", "tilt", "live", port, "--no-browser", "--baud", 500000],
                                                 stdout=subprocess.PIPE))
             page = browser.open(live.stdout.readline().strip())
-            page.until("tiltLive.figures().firstPictureMs && tiltLive.figures().filters.length")
-            page.until("tiltLive.figures().rate > 390")
+            page.until("tiltPage.figures().firstPictureMs && tiltPage.figures().filters.length")
+            page.until("tiltPage.figures().rate > 390")
             before = page.figures()
             page.value(f"document.querySelector('input[value={LIGHT}]').click()")
-            page.until(f"tiltLive.figures().filter === '{LIGHT}'")
-            page.until(f"tiltLive.figures().rows > {before['rows'] + 2 * RATE_HZ}")
+            page.until(f"tiltPage.figures().filter === '{LIGHT}'")
+            page.until(f"tiltPage.figures().rows > {before['rows'] + 2 * RATE_HZ}")
             after = page.figures()
         print(f"simrun: {after['rows']} rows, {after['rate']:.1f} rows/s")
         self.assertEqual(after["filters"], FIRMWARE.with_name("filters.txt").read_text(encoding="ascii").split())

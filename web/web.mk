@@ -1,0 +1,20 @@
+# The demo: one file that runs the firmware in a browser. The worker is packed by esbuild (npm); web/README.md.
+W := $(B)/web
+DEMO := $(B)/demo/tilt-demo.html
+$(W)/worker.js: web/pack.mjs $(wildcard web/worker/*.mjs) $(addprefix second/,adxl345.mjs board.mjs timer.mjs twowire.mjs uno.mjs varied.mjs)
+	@node web/pack.mjs $@
+
+$(DEMO): $(U)/firmware.hex $(W)/worker.js web/demo_page.py tools/tilt/whole_page.py $(wildcard web/*.html web/*.css web/*.js) LICENSE
+	@python3 web/demo_page.py $(U)/firmware.hex $(W)/worker.js LICENSE $(B)/second/node_modules/avr8js/LICENSE $@
+
+## demo: build build/demo/tilt-demo.html, a page that runs the firmware on a simulated UNO in a browser
+demo:
+	@sh tools/deps.sh firmware
+	@sh tools/deps.sh demo
+	@$(MAKE) $(DEMO)
+	@echo "demo: open $(DEMO) in a browser"
+
+# for its tests, which are skipped where it cannot be built
+demo_built: $(if $(and $(wildcard $(W)/node_modules/esbuild),$(wildcard $(B)/second/node_modules/avr8js)),$(DEMO))
+
+.PHONY: demo demo_built
