@@ -1,5 +1,6 @@
 """Reads JSON: one reading per line, an array of readings, or Edge Impulse's payload."""
 import json
+import re
 
 import numpy as np
 
@@ -11,8 +12,12 @@ from tilt.importing.readings import Readings
 FREE = None  # decimals of numbers printed with all their digits
 
 
+PYTHON_LIST = re.compile(rb"\[[^\[\]{}]*\][ \t]*[\r\n]")  # print() of three numbers, once a line: text
+
+
 def is_json(head):
-    return head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"[")
+    head = head.lstrip(b"\xef\xbb\xbf \t\r\n")
+    return head[:1] in (b"{", b"[") and not PYTHON_LIST.match(head)
 
 
 def read(path, file, options):

@@ -52,8 +52,7 @@ def header_cells(line, wanted=frozenset()):
     if text.startswith("##"):
         return None
     text = text.lstrip("#").strip()
-    clock = forms.CLOCKED.fullmatch(text)
-    text = clock.group(2) if clock else text
+    _, text = forms.clocked(text)
     for separator in (",", ";", "\t", None):
         cells = [cell.strip() for cell in text.split(separator)]
         if cols.is_header(cells, wanted):

@@ -127,7 +127,8 @@ class Reader:
         """A line that is not a row: text is skipped and reported, unless it holds the numbers of a row."""
         if self.settled.plan.keyword is not None:
             return
-        if len(forms.NUMBERS.findall(text)) >= 3 and not any(c.isalpha() for c in text.replace("e", "").replace("E", "")):
+        _, body = forms.clocked(text)
+        if len(forms.numbers_in(body)) >= 3 and not any(c.isalpha() for c in body.replace("e", "").replace("E", "")):
             raise at(self.path, line, f"not in the form of the other rows: '{text[:SHOWN]}'")
         self.skipped.append((line, text))
 
