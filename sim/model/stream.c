@@ -129,8 +129,9 @@ static bool read_header(reader_t *r, char *line)
     for (int c = COLUMN_T; c <= COLUMN_Z; c++) {
         if (r->index[c] < 0) {
             return fail(r, "missing column %s%s", column_name[c],
-                        r->has_header ? "" : " (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first): "
-                                            "tilt import FILE converts other recordings");
+                        r->has_header ? ""
+                                      : " (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first): "
+                                        "tilt import FILE converts other recordings");
         }
     }
     r->has_header = true;

@@ -115,7 +115,8 @@ class Refuses(Case):
     def test_rows(self):
         for row, reason in (("0,0,0", "3 fields where the header has 4"), ("0,0,0,0,", "5 fields where the header has 4"),
                             ("0" + ",0" * 64, "65 or more fields where the header has 4"),
-                            ("0,,0,0", "x is not a whole number: ''"), ("0,0,1.0,0", "y is not a whole number: '1.0': tilt import FILE converts other units"),
+                            ("0,,0,0", "x is not a whole number: ''"),
+                            ("0,0,1.0,0", "y is not a whole number: '1.0': tilt import FILE converts other units"),
                             ("0,0,0,0x1", "z is not a whole number: '0x1'"), ("0,1 2,0,0", "x is not a whole number: '1 2'"),
                             ("0,--1,0,0", "x is not a whole number: '--1'"), ("0,-,0,0", "x is not a whole number: '-'"),
                             ("99999999999999999999,0,0,0", "t_us is not a whole number: '99999999999999999999'"),

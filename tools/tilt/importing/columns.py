@@ -9,7 +9,8 @@ from tilt.errors import TiltError
 from tilt.importing.forms import UNIT_WORDS, is_number
 
 AXIS = re.compile(r"(?:(?P<kind>acc|accel|accelero|acceleration|accelerometer|adxl|adxl345|a|raw|sensor|g(?=-))(?P<first>\d*)[ _.-]?)?(?P<axis>[xyz])"
-                  r"(?P<second>\d*)(?P<times>\*multiplier)?(?:[ _.-]?(?P<suffix>lsb|raw|counts|mg|g|ms2|m/s2|m/s\^2|axis|acc|accel|a|out|val|value|norm))?")
+                  r"(?P<second>\d*)(?P<times>\*multiplier)?"
+                  r"(?:[ _.-]?(?P<suffix>lsb|raw|counts|mg|g|ms2|m/s2|m/s\^2|axis|acc|accel|a|out|val|value|norm))?")
 BRACKET = re.compile(r"[(\[]([^)\]]*)[)\]]")
 TIMES = {"t": None, "time": None, "timestamp": None, "time_stamp": None, "datetime": None, "date_time": None, "epoch": None, "date": None,
          "t_us": "us", "time_us": "us", "micros": "us", "us": "us", "timestamp_us": "us", "t_ms": "ms", "time_ms": "ms", "millis": "ms",

@@ -33,7 +33,8 @@ def read(path, file):
         raise TiltError(f"{path}: from an AX6, which has no ADXL345: record with an AX3")
     data = file.read()
     if len(data) % BLOCK:
-        raise TiltError(f"{path}: cut short: block {HEADER // BLOCK + len(data) // BLOCK} has {len(data) % BLOCK} bytes of {BLOCK}: export it from the sensor again")
+        raise TiltError(f"{path}: cut short: block {HEADER // BLOCK + len(data) // BLOCK} has {len(data) % BLOCK} bytes of {BLOCK}: "
+                        "export it from the sensor again")
     found = np.frombuffer(data, dtype=np.uint8).reshape(-1, BLOCK)
     if len(found) == 0:
         raise TiltError(f"{path}: only a header, no blocks: record again")
