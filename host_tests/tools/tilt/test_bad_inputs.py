@@ -21,7 +21,8 @@ SEE, IMPORT, MEND = "see tilt ", "tilt import FILE", "correct or delete"
 
 # (what the file holds, what every reader of streams says)
 STREAMS = (
-    ("", "is empty"), ("# x\n", "no header"), (HEADER, "no rows"), (IN_G, IMPORT), (STREAM.encode("utf-16"), IMPORT), ("time,x,y,z\n0,1,2,3\n", IMPORT),
+    ("", "is empty"), ("# x\n", "no header"), (HEADER, "no rows"), (IN_G, IMPORT), (STREAM.encode("utf-16"), IMPORT),
+    ("time,x,y,z\n0,1,2,3\n", IMPORT),
     ("12,3,250\n", IMPORT), ("X: 1 Y: 2 Z: 3\n", IMPORT), (HEADER + "0,1,2\n", "the header has 4"), (HEADER + "20,0,0,0\n10,0,0,0\n", "backwards"),
     (HEADER + "0,5000,0,0\n", "outside -4096..4095"))
 # (what the file holds, options, remedy)
@@ -50,8 +51,10 @@ LINES = (
     ("plot FILE -o OUT.gif", ".png .svg .html"), ("plot FILE --columns q", "choose from"), ("plot FILE --columns ,", "name at least one"),
     ("plot FILE --from x", SEE), ("plot FILE -o no/where.png", "No such file"), ("plot", SEE), ("import FILE -o FILE", "another name"),
     ("import missing.csv", "give a recording's path"), ("import DIR", "give a recording's path"), ("import FILE FILE -o OUT.csv", "give one FILE"),
-    ("record FILE", "give one, such as"), ("record missing", "port"), ("record FILE --baud 12345", "choose from"), ("record FILE --seconds 0", "give a time"),
-    ("record FILE --seconds 1_0", SEE), ("record FILE -o FILE", "--force"), ("record FILE -o no/where.csv", "no folder"), ("live FILE", "give one, such as"))
+    ("record FILE", "give one, such as"), ("record missing", "port"), ("record FILE --baud 12345", "choose from"),
+    ("record FILE --seconds 0", "give a time"),
+    ("record FILE --seconds 1_0", SEE), ("record FILE -o FILE", "--force"), ("record FILE -o no/where.csv", "no folder"),
+    ("live FILE", "give one, such as"))
 
 
 class Case(unittest.TestCase):
