@@ -3,7 +3,7 @@
 
 const FLAGS = [[1, "gated", "info"], [2, "coasted", "warn"], [4, "re-acquired", "info"], [8, "clipped", "warn"], [16, "silence", "bad"],
   [32, "stuck", "bad"], [64, "integrity", "bad"], [128, "warming up", "info"], [256, "dropped", "bad"], [512, "not gravity", "warn"],
-  [1024, "roll undefined", "warn"]];
+  [1024, "roll undefined", "warn"], [2048, "switched", "info"], [4096, "axis left out", "warn"]];
 const GATED = 1, NO_SAMPLE = 2 | 16, DROPPED = 256;
 const COLUMNS = "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags".split(",");
 const RANGES = { t_us: [0, 4294967295], x_lsb: [-4096, 4095], y_lsb: [-4096, 4095], z_lsb: [-4096, 4095],

@@ -174,10 +174,12 @@ TEST(test_refuses_empty_files)
     refused("t_us,x,y,z\n# nothing\n", 2, "no rows after the header");
 }
 
+#define HINT "comes first): tilt import FILE converts other recordings"
+
 TEST(test_refuses_a_missing_column)
 {
-    refused("t_us,x,z\n0,1,2\n", 1, "missing column y (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first)");
-    refused("0,1,2,3\n", 1, "missing column t_us (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first)");
+    refused("t_us,x,z\n0,1,2\n", 1, "missing column y (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb " HINT);
+    refused("0,1,2,3\n", 1, "missing column t_us (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb " HINT);
     refused("t_us,x,y,z\n0,1,2,3\nt_us,x,y\n", 3, "missing column z");
 }
 
@@ -191,7 +193,7 @@ TEST(test_refuses_what_is_no_whole_number)
 {
     refused("t_us,x,y,z\n0,1,abc,3\n", 2, "y is not a whole number: 'abc'");
     refused("t_us,x,y,z\n0,1,,3\n", 2, "y is not a whole number: ''");
-    refused("t_us,x,y,z\n0,1,2,3.5\n", 2, "z is not a whole number: '3.5'");
+    refused("t_us,x,y,z\n0,1,2,3.5\n", 2, "z is not a whole number: '3.5': tilt import FILE converts other units");
     refused("t_us,x,y,z\n1e3,1,2,3\n", 2, "t_us is not a whole number: '1e3'");
     refused("t_us,x,y,z\n0,nan,2,3\n", 2, "x is not a whole number: 'nan'");
     refused("t_us,x,y,z\n0,1 2,2,3\n", 2, "x is not a whole number: '1 2'");

@@ -113,6 +113,7 @@ typedef struct {
     bool learns;               /* its noise, or the share of outliers: a restart keeps that */
     bool rate_is_a_difference; /* of two estimates: at rest 314 and 589 degrees a second at 800 Hz */
     bool switches;             /* FILTER_SWITCHED may be set */
+    bool published_only;       /* to compare with its paper: no tool recommends it */
     bool locks_out;            /* as published: after outliers in runs it may not come back to a motion */
     bool loses_motion;         /* or may be off it while they last */
     bool stays_away;           /* not back within 400 samples after a jump of thousands of LSB */

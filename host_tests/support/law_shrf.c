@@ -14,5 +14,5 @@ const char *broken_shrf(const filter_t *f)
 law_facts_t law_facts_shrf(void)
 {
     return (law_facts_t){ ENVELOPE(0.0, 1.0, 1200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_WAITS) USUAL, SETTLES_IN(150),
-                          .joint_condition = true, .loses_motion = true };
+                          .published_only = true, .joint_condition = true, .loses_motion = true };
 }

@@ -18,6 +18,7 @@ law_facts_t law_facts_sprf_paper(void)
 {
     return (law_facts_t){ ENVELOPE(0.0, 1.0, 200.0 / PAPER_TIME_CONSTANT, 0, ENVELOPE_NONE) REFUSES,
                           SETTLES_IN(443),
+                          .published_only = true,
                           .locks_out = true,
                           .stays_away = true,
                           .restarts = true,

@@ -47,6 +47,7 @@ law_facts_t law_facts_synth(void)
     return (law_facts_t){ ENVELOPE(2.277, 1.0, 0.0, 56, ENVELOPE_FIXED_GAIN, .noise_gain = noise_gain) USUAL,
                           REFUSES,
                           SETTLES_IN(40),
+                          .published_only = true,
                           .joint_condition = true,
                           .rate_is_a_difference = true,
                           .synthesised = true };

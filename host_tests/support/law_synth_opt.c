@@ -33,6 +33,10 @@ const char *broken_synth_opt(const filter_t *f)
 
 law_facts_t law_facts_synth_opt(void)
 {
-    return (law_facts_t){ ENVELOPE(1.446, 1.0, 0.0, 19, ENVELOPE_FIXED_GAIN, .noise_gain = noise_gain) USUAL, REFUSES,
-                          SETTLES_IN(14), .rate_is_a_difference = true, .synthesised = true };
+    return (law_facts_t){ ENVELOPE(1.446, 1.0, 0.0, 19, ENVELOPE_FIXED_GAIN, .noise_gain = noise_gain) USUAL,
+                          REFUSES,
+                          SETTLES_IN(14),
+                          .published_only = true,
+                          .rate_is_a_difference = true,
+                          .synthesised = true };
 }

@@ -129,7 +129,9 @@ static bool read_header(reader_t *r, char *line)
     for (int c = COLUMN_T; c <= COLUMN_Z; c++) {
         if (r->index[c] < 0) {
             return fail(r, "missing column %s%s", column_name[c],
-                        r->has_header ? "" : " (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first)");
+                        r->has_header ? ""
+                                      : " (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first): "
+                                        "tilt import FILE converts other recordings");
         }
     }
     r->has_header = true;
@@ -147,7 +149,8 @@ static bool bounded(reader_t *r, char *field[], int column, int64_t low, int64_t
 {
     const char *text = field[r->index[column]];
     if (!parse_integer(text, value)) {
-        return fail(r, "%s is not a whole number: '%.40s'", column_name[column], text);
+        return fail(r, "%s is not a whole number: '%.40s'%s", column_name[column], text,
+                    strchr(text, '.') == NULL ? "" : ": tilt import FILE converts other units");
     }
     if (*value < low || *value > high) {
         return fail(r, "%s is outside %lld..%lld: %lld", column_name[column], (long long)low, (long long)high,
@@ -250,7 +253,7 @@ static bool read_lines(reader_t *r, char *text, size_t length)
         char *newline = memchr(at, '\n', (size_t)(end - at));
         char *line_end = newline == NULL ? end : newline;
         if (memchr(at, '\0', (size_t)(line_end - at)) != NULL) {
-            return fail(r, "a NUL byte: this is no text file");
+            return fail(r, "a NUL byte: tilt import FILE reads UTF-16");
         }
         *line_end = '\0';
         if (!read_line(r, at)) {

@@ -20,8 +20,16 @@ def modules():
     return {module.NAME: module for module in sorted(found, key=lambda module: module.NAME)}
 
 
+class Parser(argparse.ArgumentParser):
+    """Reports a wrong option in one line, as all else is reported."""
+
+    def error(self, message):
+        message = message.removeprefix("argument ")
+        self.exit(EXIT_UNUSABLE, f"{self.prog}: {message}{'' if 'choose from' in message else f': see {self.prog} --help'}\n")
+
+
 def parser_of(found):
-    parser = argparse.ArgumentParser(prog="tilt", description="Work with tilt-uno recordings and boards on the PC.")
+    parser = Parser(prog="tilt", description="Work with tilt-uno recordings and boards on the PC.")
     jobs = parser.add_subparsers(dest="job", metavar="COMMAND", required=True)
     for name, module in found.items():
         job = jobs.add_parser(name, help=module.SUMMARY, description=module.__doc__,

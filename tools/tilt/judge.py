@@ -1,14 +1,15 @@
-"""Judges filters by distance from the truth, else by their innovations; and tests whether two of them differ."""
+"""Judges filters by distance from the truth, else from a smoother without lag; and tests whether two of them differ."""
 from dataclasses import dataclass
 
 import numpy as np
 
 from tilt import native
-from tilt.angles import angle_deg, direction, wrapped_deg
+from tilt.angles import LSB_PER_G, angle_deg, direction, wrapped_deg
 
 COASTED, CLIPPED, FAULT, WARMING, ROLL_UNDEFINED = 2, 8, 16, 128, 1024
 BATCHES, BATCHES_MOST, BATCH_MIN, BATCH_S = 20, 200, 10, 0.5  # half a second: the memory of most filters
 NOISE_T = 3.5               # Student's t with 14 degrees of freedom: 5 % two-sided, shared by the twelve comparisons with the best
+INTERVAL_T = 2.14           # and 5 % for one
 CUT = 4.0                   # sigmas: limit of an innovation, so that outliers weigh the same for all filters
 BOARD_FACTOR = 1.5          # the board's R over the variance (noise.h)
 MOVES_DEG_S = 0.5           # least rms rate of the truth at which a lag can be measured
@@ -30,6 +31,12 @@ class Difference:
     @property
     def significant(self):
         return abs(self.t) >= NOISE_T
+
+    @property
+    def interval(self):
+        """Of the mean, 95 %."""
+        half = INTERVAL_T * abs(self.mean / self.t) if self.t else float("inf")
+        return self.mean - half, self.mean + half
 
 
 def difference(loss, best, rate_hz):
@@ -114,25 +121,14 @@ def innovations(probes):
     return probes["innovation_lsb_q16"] / 65536.0
 
 
-def correlation(values, whole):
-    """Correlation of neighbouring values about 0; only pairs that are both judged and not outliers count."""
-    pairs = whole[1:] & whole[:-1]
-    first, second = values[:-1][pairs], values[1:][pairs]
-    power = np.sum(first ** 2) + np.sum(second ** 2)
-    return float(2.0 * np.sum(first * second) / power) if power > 0.0 else 0.0
-
-
-def by_innovations(axes, use, sigma_lsb):
-    """(numbers, loss per row) of one filter. axes: its probes; sigma_lsb: noise of a sample per axis, the same for all filters."""
-    losses, ratios, correlations = [], [], []
-    for probes, sigma in zip(axes, sigma_lsb):
-        away, variance = innovations(probes), variance_of(probes)
-        losses.append(np.minimum((away[use] / sigma) ** 2, CUT ** 2))
-        ratios.append(float(np.median(away[use] ** 2 / variance[use])) / CHI2_MEDIAN)
-        correlations.append(correlation(away / sigma, use & (away ** 2 < CUT ** 2 * sigma ** 2)))
-    loss = np.mean(losses, axis=0)
-    return {"misses_sigma": float(np.sqrt(loss.mean())), "nis": float(np.mean(ratios)),
-            "lag1": max(correlations, key=abs)}, loss
+def against_smoothed(t_us, axes, reference, use):
+    """(numbers, loss per row) of one filter over the rows in use. axes: its probes; reference: smoother.smoothed."""
+    errors = np.stack([probes["x_lsb_q16"][use] / 65536.0 - reference[use, axis] for axis, probes in enumerate(axes)], axis=1)
+    loss = np.mean(errors ** 2, axis=1)
+    turned = [np.degrees(part.T / LSB_PER_G[:, None]) for part in (errors, reference[use])]
+    ratios = [float(np.median(innovations(probes)[use] ** 2 / variance_of(probes)[use])) / CHI2_MEDIAN for probes in axes]
+    return {"error_lsb": float(np.sqrt(loss.mean())) if len(loss) else float("nan"), "nis": float(np.mean(ratios)),
+            "lag_ms": lag_ms(t_us[use], *turned)}, loss
 
 
 def judged(tables_of_probes):

@@ -225,6 +225,17 @@ def _in_child(work):
 # --- one axis ---------------------------------------------------------------------------------------------------------
 
 
+def published_only():
+    """Names of the filters that are there to compare with the papers; no tool recommends one (host_tests/support/law_NAME.c)."""
+    facts = ROOT.glob("host_tests/support/law_*.c")
+    return {path.stem.removeprefix("law_") for path in facts if ".published_only = true" in path.read_text(encoding="utf-8")}
+
+
+def cycles(name):
+    """Worst case of an update on the chip, per axis."""
+    return library().libtilt_filter_cycles(filters().index(name))
+
+
 def flashed_by(name):
     """The command that writes the first image with this filter to a board (mk/images.mk)."""
     text = (ROOT / "mk/images.mk").read_text(encoding="utf-8")

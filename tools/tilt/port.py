@@ -130,6 +130,8 @@ class Port:
 
 def reason_of(why):
     number = getattr(why, "errno", None)
+    if number == errno.ENOTTY or os.strerror(errno.ENOTTY) in str(why):
+        return "not a serial port: give one, such as /dev/ttyACM0 or COM3"
     if number is None:
         return str(why)
     return "in use by another program" if number == errno.EWOULDBLOCK else os.strerror(number)

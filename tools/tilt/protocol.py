@@ -9,18 +9,31 @@ WRAP_US = 1 << 32      # t_us is a uint32
 WRAP_STEP_US = 1 << 31  # a step back by more than this is a wrap
 LINE_MAX = 512         # bytes; the board's longest line is less than half of this
 
-GATED, COASTED, REACQUIRED, CLIPPED, SILENCE, STUCK, INTEGRITY, WARMING_UP, DROPPED, NOT_GRAVITY, ROLL_UNDEFINED = (1 << bit for bit in range(11))
+# bits of the column `flags` in the order of the firmware's enum row_flag (firmware/path/pipeline.h)
+FLAG_NAMES = dict(zip((1 << bit for bit in range(16)), ("gated", "coasted", "re-acquired", "clipped", "silence", "stuck", "integrity", "warming up",
+                                                        "dropped", "not gravity", "roll undefined", "switched", "axis left out")))
+(GATED, COASTED, REACQUIRED, CLIPPED, SILENCE, STUCK, INTEGRITY, WARMING_UP, DROPPED, NOT_GRAVITY, ROLL_UNDEFINED, SWITCHED,
+ LEFT_OUT) = FLAG_NAMES
 NO_SAMPLE = COASTED | SILENCE
-FLAG_NAMES = {GATED: "gated", COASTED: "coasted", REACQUIRED: "re-acquired", CLIPPED: "clipped", SILENCE: "silence", STUCK: "stuck",
-              INTEGRITY: "integrity", WARMING_UP: "warming up", DROPPED: "dropped", NOT_GRAVITY: "not gravity", ROLL_UNDEFINED: "roll undefined"}
 
 LIMITS = {"t_us": (0, WRAP_US - 1), "x_lsb": (-4096, 4095), "y_lsb": (-4096, 4095), "z_lsb": (-4096, 4095), "roll_cdeg": (-18000, 18000),
           "pitch_cdeg": (-9000, 9000), "flags": (0, 65535)}
 ANY_NUMBER = (-(1 << 31), WRAP_US - 1)
 NEEDED = ("t_us", "x_lsb", "y_lsb", "z_lsb")
-BANNER = "# tilt-uno "
+BANNER, RESET = "# tilt-uno ", "# reset: "  # one after the other at a start
 PLOTTER_ROW = re.compile(r"roll_raw:-?\d+\.\d+,roll:")
 NUMBER = re.compile(r"-?\d{1,10}\Z")
+
+
+REFUSED = "# refused"
+# how the answer to a command begins, where it is not "# " and the command's first word
+ANSWERS = {"help": "# ", "?": "# ", "settings": "# filter", "status": "# state", "version": BANNER, "load": "# settings", "defaults": "# settings"}
+
+
+def answers(command, text):
+    """Whether a line is the board's answer to a command; a refusal is one too."""
+    word = (command.split() or [""])[0].lower()
+    return text.startswith((ANSWERS.get(word, f"# {word}"), REFUSED))
 
 
 class Row(NamedTuple):

@@ -49,7 +49,7 @@ class Recorder:
 
     def begin(self):
         """Resets the state, as when the port has just been opened: input may begin anywhere."""
-        self.tail, self.joining, self.header, self.suspect, self.spoken = b"", True, None, None, False
+        self.tail, self.joining, self.header, self.suspect, self.spoken, self.banner = b"", True, None, None, False, False
 
     def feed(self, data):
         *whole, self.tail = (self.tail + data).split(b"\n")
@@ -107,10 +107,11 @@ class Recorder:
             self.take_row(text)
 
     def take_saying(self, text):
-        if text.startswith(protocol.BANNER) and self.header is not None:
+        if self.banner and text.startswith(protocol.RESET) and self.header is not None:
             self.counts.resets += 1
             self.end_of_run()
             self.header = None
+        self.banner = text.startswith(protocol.BANNER)  # alone it answers `version`
         self.ours = self.ours or text.startswith(protocol.BANNER)
         self.spoken = True
         self.understood += 1

@@ -101,7 +101,7 @@ def _header(path, number, text, extra, before):
         places.setdefault(name.decode("utf-8", "replace"), place)
     for name in (TIME, *READING, *extra):
         if name not in places:
-            hint = "" if before else " (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first)"
+            hint = "" if before else " (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first): tilt import FILE converts other recordings"
             raise at(path, number, f"missing column {name}{hint if name not in extra else ''}")
     found = _Header(len(names), places)
     if any(len(other.line) for other in before) and found.has_truth != before[-1].has_truth:
@@ -217,7 +217,8 @@ def _fill(path, table, head, lines, extra, progress):
 def _number(path, number, name, text):
     value = int(text) if WHOLE.fullmatch(text) and len(text) < 64 else None
     if value is None or not WHOLE_MIN <= value <= WHOLE_MAX:
-        raise at(path, number, f"{name} is not a whole number: '{text[:40].decode('utf-8', 'replace')}'")
+        hint = ": tilt import FILE converts other units" if b"." in text else ""
+        raise at(path, number, f"{name} is not a whole number: '{text[:40].decode('utf-8', 'replace')}'{hint}")
     low, high = RANGES.get(name, (WHOLE_MIN, WHOLE_MAX))
     if not low <= value <= high:
         raise at(path, number, f"{name} is outside {low}..{high}: {value}")
@@ -257,7 +258,7 @@ def _careful(path, data, extra, progress):
     pieces = (data[:-1] if data.endswith(b"\n") else data).split(b"\n")
     for number, raw in enumerate(pieces, 1):
         if b"\0" in raw:
-            raise at(path, number, "a NUL byte: this is no text file")
+            raise at(path, number, "a NUL byte: tilt import FILE reads UTF-16")
         text = raw.strip(BLANKS)
         if not text or text.startswith(b"#"):
             continue

@@ -1,4 +1,5 @@
 """What the tests of `tilt import` share: integers that are known beforehand, and a run of the command on a file made from them."""
+import re
 import sys
 
 sys.dont_write_bytecode = True
@@ -9,6 +10,7 @@ G = 9.80665
 # x, y within +-20 and +-30, z about 1 g: each row differs from its neighbours, values even and odd
 LSB = [((i * 37) % 41 - 20, (i * 53) % 61 - 30, 240 + (i * 29) % 37) for i in range(ROWS)]
 HEADER = "t_us,x,y,z"
+REMEDY = r"(correct|delete|give|split|record|export|save|unpack|choose|name|write|print|needs|count from|import|among) "
 
 
 def every(period_us, rows=ROWS):
@@ -52,10 +54,12 @@ class Case(InFolder):
         return said
 
     def refused(self, content, reason, *words, name="in.txt", line=None):
-        """The import ends with status 2 and exactly this reason, and nothing is written."""
+        """The import ends with status 2 and exactly this reason, with a remedy after it or in it, and nothing is written."""
         path = self.file(content, name)
         self.out.unlink(missing_ok=True)
         status, said = self.run_tilt(path, "-o", self.out, *words)
         where = f"{path}:{line}: " if line else f"{path}: "
-        self.assertEqual((status, said), (2, f"tilt import: {where}{reason}\n"))
+        self.assertEqual(status, 2, said)
+        self.assertRegex(said, re.escape(f"tilt import: {where}{reason}") + r"(: [^:\n]*)?\n\Z")
+        self.assertRegex(said.removeprefix(f"tilt import: {where}"), REMEDY)
         self.assertEqual(sorted(found.name for found in self.folder.iterdir()), [name])

@@ -51,8 +51,8 @@ class Files(Case):
 
     def test_not_there(self):
         missing = self.folder / "missing.csv"
-        self.assertEqual(self.run_tilt(missing), (2, f"tilt import: {missing}: No such file or directory\n"))
-        self.assertEqual(self.run_tilt(self.folder), (2, f"tilt import: {self.folder}: Is a directory\n"))
+        self.assertEqual(self.run_tilt(missing), (2, f"tilt import: {missing}: No such file or directory: give a recording's path\n"))
+        self.assertEqual(self.run_tilt(self.folder), (2, f"tilt import: {self.folder}: Is a directory: give a recording's path\n"))
 
     def test_spectra(self):
         for head, words in (("freq,psd_x,psd_y,psd_z,psd_xyz,mzv\n", "freq, psd_x, psd_y, psd_z"), ("freq,x,y,z\n", "freq, x, y, z")):
@@ -204,7 +204,7 @@ class Options(Case):
     def test_files_of_different_forms_are_not_joined(self):
         first, second = self.file(TABLE, "a1.csv"), self.file("x,y,z\n1,2,3\n", "a2.csv")
         self.assertEqual(self.run_tilt(first, second, "--join", "-o", self.out),
-                         (2, f"tilt import: {second}: not in the form of {first}: times, units or columns differ\n"))
+                         (2, f"tilt import: {second}: not in the form of {first}: times, units or columns differ: import it alone\n"))
 
     def test_a_fault_in_a_joined_file_names_that_file(self):
         first, second = self.file(TABLE, "a1.csv"), self.file("t_ms,x,y,z\n600,1,2,3\n610,1,2,9999\n", "a2.csv")

@@ -54,7 +54,7 @@ class Typed(test_record.Case):
             typed.append(board.typed)
             board.send(rows(61, 70))
             board.heard(b"rate 400\n")
-            board.send(rows(70, 250))
+            board.send(b"# rate 400 Hz\n" + rows(70, 250))
         status, out, err, _ = self.run_tilt(script, *self.for_seconds(2.4), "--send", "baud 500000", "--send", "rate 400",
                                             speed=termios.B115200, ANSWER_S=120.0, BAUD_ANSWER_S=120.0)
         self.assertEqual((status, typed), (0, [b"baud 500000\n"]), out + err)
@@ -66,16 +66,20 @@ class Typed(test_record.Case):
             board.send(rows(50, 250))
         status, out, err, _ = self.run_tilt(script, *self.for_seconds(2.4), "--send", "baud 500000", "--send", "rate 400", "--send", "every 1",
                                             ANSWER_S=0.1, BAUD_ANSWER_S=0.1)
-        self.assertEqual(status, 0, out + err)
+        self.assertEqual(status, 1, out + err)
+        for command in ("baud 500000", "rate 400", "every 1"):
+            self.assertIn(f"the board did not answer '{command}'", out)
 
     def test_a_stopped_board_changes_its_baud_rate_and_hears_the_next_command(self):
         def script(board):
             board.send(BANNER + HEADER + rows(0, 50))
+            board.heard(b"stop\n")
+            board.send(b"# stopped\n")
             board.heard(b"baud 500000\n")
             board.send(b"# baud 500000\n")
             board.heard(b"go\n")
-            board.send(row(60)[3:] + rows(61, 250))
-        status, out, err, _ = self.run_tilt(script, *self.for_seconds(2.2), "--send", "baud 500000", "--send", "go", ANSWER_S=0.1,
+            board.send(b"# going\n" + rows(61, 250))
+        status, out, err, _ = self.run_tilt(script, *self.for_seconds(2.2), "--send", "stop", "--send", "baud 500000", "--send", "go", ANSWER_S=0.1,
                                             BAUD_ANSWER_S=120.0)
         self.assertEqual(status, 0, out + err)
 

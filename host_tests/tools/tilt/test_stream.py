@@ -47,7 +47,7 @@ class Reads(Case):
         s = self.read("t_us,x,y,z,roll_cdeg\n0,0,0,256,-17999\n1,0,0,256,18000\n", ["roll_cdeg"])
         self.assertEqual(s.columns["roll_cdeg"].tolist(), [-17999, 18000])
         self.refused("t_us,x,y,z\n0,0,0,0\n", 1, "missing column roll_cdeg", ["roll_cdeg"])
-        self.refused("t_us,x,y,z,mg\n0,0,0,0,1.5\n", 2, "mg is not a whole number: '1.5'", ["mg"])
+        self.refused("t_us,x,y,z,mg\n0,0,0,0,1.5\n", 2, "mg is not a whole number: '1.5': tilt import FILE converts other units", ["mg"])
 
     def test_truth_and_flags(self):
         s = self.read("t_us,x,y,z,pitch_true_cdeg,flags,roll_true_cdeg\n0,0,0,256,9000,2,-18000\n1,0,0,0,-9000,16,18000\n2,0,0,0,0,65517,1\n")
@@ -96,14 +96,14 @@ class Refuses(Case):
         self.refused("", 1, "the file is empty")
         self.refused("# x\n\n", 2, "no header")
         self.refused("# x\nt_us,x,y,z\n", 2, "no rows after the header")
-        self.refused("t_us,x,y,z\n0,0,\0,0\n", 2, "a NUL byte: this is no text file")
+        self.refused("t_us,x,y,z\n0,0,\0,0\n", 2, "a NUL byte: tilt import FILE reads UTF-16")
         with self.assertRaisesRegex(errors.TiltError, r"absent.csv: cannot be read: No such file"):
             stream.read(self.path.parent / "absent.csv")
         with self.assertRaisesRegex(errors.TiltError, "cannot be read: Is a directory"):
             stream.read(self.path.parent)
 
     def test_headers(self):
-        hint = " (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first)"
+        hint = " (a header with t_us and x,y,z or x_lsb,y_lsb,z_lsb comes first): tilt import FILE converts other recordings"
         self.refused("0,0,0,0\n", 1, "missing column t_us" + hint)
         self.refused("t_us,x,y\n0,0,0\n", 1, "missing column z" + hint)
         self.refused("t_us,x,y,z\n0,0,0,0\nt_us,x,y\n", 3, "missing column z")
@@ -113,7 +113,8 @@ class Refuses(Case):
     def test_rows(self):
         for row, reason in (("0,0,0", "3 fields where the header has 4"), ("0,0,0,0,", "5 fields where the header has 4"),
                             ("0" + ",0" * 64, "65 or more fields where the header has 4"),
-                            ("0,,0,0", "x is not a whole number: ''"), ("0,0,1.0,0", "y is not a whole number: '1.0'"),
+                            ("0,,0,0", "x is not a whole number: ''"),
+                            ("0,0,1.0,0", "y is not a whole number: '1.0': tilt import FILE converts other units"),
                             ("0,0,0,0x1", "z is not a whole number: '0x1'"), ("0,1 2,0,0", "x is not a whole number: '1 2'"),
                             ("0,--1,0,0", "x is not a whole number: '--1'"), ("0,-,0,0", "x is not a whole number: '-'"),
                             ("99999999999999999999,0,0,0", "t_us is not a whole number: '99999999999999999999'"),

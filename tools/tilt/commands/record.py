@@ -4,7 +4,8 @@ Opening the port resets the board (as every serial monitor does), so the file be
 Rows are written as they arrive. If the port disappears, the command waits for it and continues in the same file, where a repeated header begins
 a new segment. It ends after --seconds, by Ctrl-C, or by SIGTERM.
 
-Status: 0 nothing is missing, 1 rows are missing (it prints how many, and why), 2 the port or the file cannot be used.
+Status: 0 nothing is missing, 1 rows are missing (it prints how many, and why), or the board refused or did not answer a command of --send, 2 the
+port or the file cannot be used.
 """
 import contextlib
 import datetime
@@ -33,6 +34,7 @@ BACK_AFTER_S = 1.5    # without a readable line, return to the first baud rate
 RETRY_S = 0.2
 SHOW_S = 0.5
 QUIET_S = 1.0         # without a row, --seconds counts by the PC's clock
+STOPPED = "# stopped"
 BAUD_SET = re.compile(r"# baud (\d+)\Z")
 
 
@@ -115,6 +117,7 @@ class Session:
     def __init__(self, args, port, recorder, screen):
         self.args, self.port, self.recorder, self.screen = args, port, recorder, screen
         self.ends, self.first_row, self.last_row, self.strange, self.answered = False, None, None, b"", False
+        self.refusals, self.rows_when_stopped = [], 0
         self.opened()
 
     def opened(self):
@@ -122,7 +125,7 @@ class Session:
         self.begin_commands()
 
     def begin_commands(self):
-        self.sent, self.to_send, self.typed, self.last_typed, self.changed = None, [], 0.0, "", None
+        self.sent, self.to_send, self.typed, self.waiting, self.changed = None, list(self.args.send), 0.0, [], None
 
     def run(self):
         while not self.over():
@@ -144,14 +147,20 @@ class Session:
     def said(self, text):
         """Handles a '#' line of the board."""
         self.screen.say(text)
+        command = next((command for command in self.waiting if protocol.answers(command, text)), None)
+        if command is not None:
+            self.waiting.remove(command)
+            self.answered = not self.waiting
+        if text.startswith(protocol.REFUSED) and self.args.send:
+            self.refusals.append(f"the board refused{f' {command!r}' if command else ''}: {text.removeprefix('# ')}")
         baud = BAUD_SET.match(text)
         if baud:
             self.port.baud = int(baud.group(1))
             self.recorder.join()
-            self.changed, self.typed, self.last_typed = self.recorder.understood, time.monotonic(), ""  # a stopped board sends no more
-        elif self.last_typed and text.startswith((f"# {self.last_typed}", "# refused")):
-            self.answered = True
-        if text.startswith(protocol.BANNER):
+            self.changed, self.typed, self.answered = self.recorder.understood, time.monotonic(), False
+        if text == STOPPED:
+            self.rows_when_stopped = self.recorder.counts.rows
+        if text.startswith(protocol.BANNER) and command is None:
             self.begin_commands()
 
     def take(self, data):
@@ -159,7 +168,7 @@ class Session:
         self.recorder.feed(data)
         if self.changed is not None and self.recorder.understood > self.changed:
             self.changed, self.answered = None, True  # only a line at the new rate shows that the board has changed too
-        if self.answered:
+        if self.answered and self.sent is not None:
             self.send_next()
         if self.recorder.counts.rows > rows:
             self.first_row, self.last_row = self.first_row or now, now
@@ -187,16 +196,28 @@ class Session:
         waited_s = time.monotonic() - self.since
         ready = self.recorder.header is not None or waited_s > (SEND_AFTER_S if self.strange else SEND_SILENT_S)
         if self.sent is None and ready:
-            self.sent, self.to_send = time.monotonic(), list(self.args.send)
+            self.sent = time.monotonic()
             self.send_next()
-        elif self.to_send and time.monotonic() - self.typed > (BAUD_ANSWER_S if self.last_typed == "baud" else ANSWER_S):
+        elif self.sent is not None and self.to_send and time.monotonic() - self.typed > self.patience_s():
             self.send_next()
+
+    def patience_s(self):
+        """How long to wait for an answer: input is lost while the baud rate changes, which a board that streams shows by a row."""
+        streams = self.recorder.counts.rows > self.rows_when_stopped
+        changing = any(command.split()[:1] == ["baud"] for command in self.waiting[-1:]) or (self.changed is not None and streams)
+        return BAUD_ANSWER_S if changing else ANSWER_S
 
     def send_next(self):
         if self.to_send:
             command = self.to_send.pop(0)
-            self.typed, self.last_typed = time.monotonic(), command.partition(" ")[0]
+            self.typed = time.monotonic()
+            self.waiting.append(command)
             self.port.send(command)
+
+    def failed(self):
+        """What became of the commands, where it is not what they ask for."""
+        open_ones = [f"the board did not answer '{command}'" for command in self.waiting] + [f"not sent: '{command}'" for command in self.to_send]
+        return self.refusals + open_ones
 
     def wait_for_port(self):
         """False: do not wait, or ended while waiting."""
@@ -269,7 +290,7 @@ def default_path():
 def checked(args):
     if args.seconds is not None and not 0 < args.seconds < float("inf"):
         raise TiltError(f"--seconds {args.seconds:g}: give a time above 0")
-    if args.baud <= 0:
+    if args.baud not in protocol.BAUDS:
         raise TiltError(f"--baud {args.baud}: choose from {', '.join(map(str, protocol.BAUDS))}")
 
 
@@ -304,5 +325,5 @@ def run(args):
     session.screen.end()
     if not recorder.counts.rows:
         raise TiltError(f"{args.port}: no row received")
-    print(summary(recorder.counts, path))
-    return 0 if recorder.counts.complete() else 1
+    print("\n".join([summary(recorder.counts, path), *session.failed()]))
+    return 0 if recorder.counts.complete() and not session.failed() else 1

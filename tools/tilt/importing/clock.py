@@ -36,7 +36,8 @@ def of_count(readings, rate, notes):
     steps = np.diff(readings.time)
     back = np.flatnonzero(steps <= 0)
     if len(back):
-        raise readings.fault(int(back[0]) + 1, f"the counter goes from {readings.time[back[0]]:g} to {readings.time[back[0] + 1]:g}")
+        before, after = readings.time[back[0]:back[0] + 2]
+        raise readings.fault(int(back[0]) + 1, f"the counter goes from {before:g} to {after:g}: split the file here")
     if (steps > 1).any():
         notes.append(f"the counter skips {int((steps - 1).sum())} samples")
     return np.rint((readings.time - readings.time[0]) * (1e6 / rate)).astype(np.int64)
@@ -71,7 +72,7 @@ def unwrapped(readings, unit):
     wraps = back & (steps < -least) & (unit in ("clock", "ms", "us")) & (time[:-1] < turn)
     if (back & ~wraps).any():
         row = int(np.flatnonzero(back & ~wraps)[0]) + 1
-        raise readings.fault(row, f"time goes backwards: {time[row]:.10g} after {time[row - 1]:.10g}")
+        raise readings.fault(row, f"time goes backwards: {time[row]:.10g} after {time[row - 1]:.10g}: split the file here, or give --rate HZ")
     marks = np.concatenate([[0], np.cumsum(wraps)])
     for row in readings.segments:
         marks[row:] -= marks[row]

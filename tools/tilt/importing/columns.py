@@ -8,8 +8,9 @@ import numpy as np
 from tilt.errors import TiltError
 from tilt.importing.forms import UNIT_WORDS, is_number
 
-AXIS = re.compile(r"(?:(?P<kind>acc|accel|accelero|acceleration|accelerometer|adxl|adxl345|a|raw|sensor)(?P<first>\d*)[ _.-]?)?(?P<axis>[xyz])"
-                  r"(?P<second>\d*)(?P<times>\*multiplier)?(?:[ _.-]?(?P<suffix>lsb|raw|counts|mg|g|ms2|m/s2|m/s\^2|axis|acc|accel))?")
+AXIS = re.compile(r"(?:(?P<kind>acc|accel|accelero|acceleration|accelerometer|adxl|adxl345|a|raw|sensor|g(?=-))(?P<first>\d*)[ _.-]?)?(?P<axis>[xyz])"
+                  r"(?P<second>\d*)(?P<times>\*multiplier)?"
+                  r"(?:[ _.-]?(?P<suffix>lsb|raw|counts|mg|g|ms2|m/s2|m/s\^2|axis|acc|accel|a|out|val|value|norm))?")
 BRACKET = re.compile(r"[(\[]([^)\]]*)[)\]]")
 TIMES = {"t": None, "time": None, "timestamp": None, "time_stamp": None, "datetime": None, "date_time": None, "epoch": None, "date": None,
          "t_us": "us", "time_us": "us", "micros": "us", "us": "us", "timestamp_us": "us", "t_ms": "ms", "time_ms": "ms", "millis": "ms",
@@ -20,6 +21,7 @@ TIME_UNITS = {"s": "s", "sec": "s", "seconds": "s", "ms": "ms", "us": "us", "µs
 KEPT = ("flags", "roll_true_cdeg", "pitch_true_cdeg")  # columns of our own streams that are copied
 PREFERRED = ("lsb", "raw", "counts")
 EPOCH = 1e8  # seconds: 1973
+DAY_S = 86400.0
 
 
 @dataclass
@@ -87,15 +89,15 @@ def of_header(cells, path, sensor):
     names = names_of(cells)
     words = [name for name, _ in names]
     if is_spectrum(words):
-        raise TiltError(f"{path}: a spectrum ({', '.join(words[:4])}), not accelerations over time")
+        raise TiltError(f"{path}: a spectrum ({', '.join(words[:4])}), not accelerations over time: import the raw data it was made from")
     sensors = sensors_of(names)
     if not sensors:
         raise TiltError(f"{path}: no columns x, y, z among {', '.join(words)}: if these are accelerations, name the columns with --columns")
     if not 1 <= sensor <= len(sensors):
-        raise TiltError(f"{path}: --sensor {sensor}: the file has {len(sensors)}")
+        raise TiltError(f"{path}: --sensor {sensor}: the file has {len(sensors)}: count from 1")
     (_, number, suffix), axes = sensors[sensor - 1]
     times = [index for index, name in enumerate(words) if name in TIMES]
-    times.sort(key=lambda index: TIMES[words[index]] == "count")  # a time before a counter
+    times.sort(key=lambda index: (TIMES[words[index]] == "count", words[index] == "date"))  # a time before a counter or the day
     chosen = Columns(axes, times[0] if times else None)
     if times:
         chosen.time_unit = TIMES[words[times[0]]] or TIME_UNITS.get(names[times[0]][1])
@@ -137,8 +139,9 @@ def of_option(text, cells, path):
 
 
 def is_time(column):
-    """Whether it never steps back, and moves."""
+    """Whether it never steps back, but at midnight or at the wrap of a counter, and moves."""
     steps = np.diff(column)
+    steps = steps[steps > -DAY_S / 2] if (steps < -DAY_S / 2).sum() == 1 else steps
     return len(steps) > 0 and (steps >= 0).all() and (steps > 0).sum() > len(steps) // 2
 
 
@@ -146,7 +149,7 @@ def of_numbers(sample, path):
     """The columns of a file without a header, from its first rows ((n, m) of numbers)."""
     width = sample.shape[1]
     if width < 3:
-        raise TiltError(f"{path}: only {width} columns of numbers: x, y and z are needed")
+        raise TiltError(f"{path}: only {width} columns of numbers: record x, y and z")
     if width == 3:
         return Columns((0, 1, 2))
     magnitude = np.sqrt((sample[:, :3] ** 2).sum(axis=1))

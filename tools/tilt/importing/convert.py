@@ -2,7 +2,7 @@
 import numpy as np
 
 from tilt.importing import clock, cwa, jsons, report, source, text, units
-from tilt.importing.readings import FLAG_COASTED, MISSING_FLAGS, joined
+from tilt.importing.readings import FLAG_COASTED, MEND, MISSING_FLAGS, joined
 from tilt.output import whole_file
 
 CHUNK_ROWS = 200_000
@@ -35,7 +35,7 @@ def multiplied(readings, notes):
     """For a file with a multiplier in each row, whose values are counts or counts times the multiplier: takes the counts."""
     if (readings.multiplier <= 0.0).any() or not np.isfinite(readings.multiplier).all():
         row = int(np.flatnonzero(~(readings.multiplier > 0.0))[0])
-        raise readings.fault(row, f"a multiplier of {readings.multiplier[row]:g}")
+        raise readings.fault(row, f"a multiplier of {readings.multiplier[row]:g}{MEND}")
     counts = units.tried(units.candidates("raw")[0], units.sample_of(readings.values), 1e-7)
     if counts.fits:
         return counts, "counts; the file's multiplier is not needed"

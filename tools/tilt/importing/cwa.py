@@ -28,15 +28,16 @@ def read(path, file):
     """The Readings of a CWA file: LSB, and seconds from the first sample."""
     head = file.read(HEADER)
     if len(head) < HEADER:
-        raise TiltError(f"{path}: cut short: the CWA header has {len(head)} bytes of {HEADER}")
+        raise TiltError(f"{path}: cut short: the CWA header has {len(head)} bytes of {HEADER}: export it from the sensor again")
     if head[4] == AX6:
-        raise TiltError(f"{path}: from an AX6, which has no ADXL345")
+        raise TiltError(f"{path}: from an AX6, which has no ADXL345: record with an AX3")
     data = file.read()
     if len(data) % BLOCK:
-        raise TiltError(f"{path}: cut short: block {HEADER // BLOCK + len(data) // BLOCK} has {len(data) % BLOCK} bytes of {BLOCK}")
+        raise TiltError(f"{path}: cut short: block {HEADER // BLOCK + len(data) // BLOCK} has {len(data) % BLOCK} bytes of {BLOCK}: "
+                        "export it from the sensor again")
     found = np.frombuffer(data, dtype=np.uint8).reshape(-1, BLOCK)
     if len(found) == 0:
-        raise TiltError(f"{path}: only a header, no blocks")
+        raise TiltError(f"{path}: only a header, no blocks: record again")
     heads = np.ascontiguousarray(found[:, :DATA_AT]).view(HEAD).ravel()
     check(path, found, heads)
     values = []
@@ -61,7 +62,7 @@ def check(path, found, heads):
     for bad, reason in faults:
         if bad.any():
             block = int(np.flatnonzero(bad)[0]) + HEADER // BLOCK
-            raise TiltError(f"{path}: block {block} (byte {block * BLOCK}): {reason}")
+            raise TiltError(f"{path}: block {block} (byte {block * BLOCK}): {reason}: export it from the sensor again")
 
 
 def samples_of(block, info):

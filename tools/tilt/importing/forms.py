@@ -7,13 +7,18 @@ from typing import Optional
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 IS_NUMBER = re.compile(rf"{NUMBER}|[-+]?nan", re.I)
 NUMBERS = re.compile(rf"(?<![\w.]){NUMBER}(?![\w])")
-CLOCKED = re.compile(r"(\d{1,2}:\d{2}:\d{2}(?:\.\d+)?)\s*->\s?(.*)")
+DATE, CLOCK = r"\d{4}-\d{2}-\d{2}[ T]", r"\d{1,2}:\d{2}:\d{2}(?:\.\d+)?"
+CLOCKED = re.compile(rf"(?:\[(?:{DATE})?(?P<boxed>{CLOCK})\]\s*(?:->)?|(?:{DATE})?(?P<arrowed>{CLOCK})\s*-?>|{DATE}(?P<dated>{CLOCK})(?=\s))"
+                     r"\s?(?P<rest>.*)")
 LITERAL = re.compile(r"""b(['"])(.*)\1\s*""")
 ESCAPED_ENDS = re.compile(r"(?:\\[rnt])+$")
-PAIRS = re.compile(rf"([A-Za-z_]\w*)\s*[=:]\s*({NUMBER})")
-KEYED = re.compile(r"([A-Za-z][\w ]*?)\s*:\s*(.*)")
+PAIRS = re.compile(rf"([A-Za-z_][\w-]*)\s*[=:]\s*({NUMBER})")
+KEYED = re.compile(r"([A-Za-z][\w ,]*?)\s*:\s*(.*)")
+DECIMAL_COMMA = re.compile(r"(?<![\d,.])(-?\d+),(\d+)(?![\d,.])")
+RAW_NAME = re.compile(r"raw|lsb|count")
 UNIT_WORDS = {"m/s^2": "m/s2", "m/s2": "m/s2", "m/s/s": "m/s2", "m/s²": "m/s2", "ms2": "m/s2", "ms-2": "m/s2", "g": "g", "mg": "mg",
               "mm/s2": "mm/s2", "mm/s^2": "mm/s2", "raw": "raw", "lsb": "raw", "counts": "raw"}
+UNIT = re.compile(rf"(?<=[\d.])[\s,;]*({'|'.join(map(re.escape, sorted(UNIT_WORDS, key=len, reverse=True)))})(?!\s*[=:]|[\w/^²-])", re.I)
 
 
 @dataclass
@@ -26,7 +31,7 @@ class Plan:
     separator: Optional[str] = ","  # None: white space
     decimal_comma: bool = False
     lead: int = 0  # fields before the first number, which are dropped
-    unit: Optional[str] = None  # as printed at the end of each row
+    unit: Optional[str] = None  # as printed in each row
     keywords: tuple = ()
 
     def plain(self):
@@ -38,10 +43,9 @@ class Plan:
         """(time of the serial monitor or None, the rest); None if the line does not match this plan."""
         time = None
         if self.clock:
-            match = CLOCKED.fullmatch(line)
-            if match is None:
+            time, line = clocked(line)
+            if time is None:
                 return None
-            time, line = match.groups()
         if self.literal:
             match = LITERAL.fullmatch(line.strip())
             if match is None:
@@ -52,7 +56,13 @@ class Plan:
             if match is None or match.group(1) != self.keyword:
                 return None
             line = match.group(2)
-        return time, line.strip()
+        return time, self.tidy(line.strip())
+
+    def tidy(self, text):
+        """A payload without units and brackets, with decimal points."""
+        text = UNIT.sub("", text) if self.unit else text
+        text = DECIMAL_COMMA.sub(r"\1.\2", text) if self.decimal_comma else text
+        return text[1:-1].strip() if text[:1] + text[-1:] in ("()", "[]") else text
 
     def fields(self, text):
         """The fields of a payload; None if it is text."""
@@ -62,78 +72,83 @@ class Plan:
         return self.cut(text)
 
     def cut(self, text):
-        """The fields of a payload without the unit at its end and what precedes the numbers."""
+        """The fields of a payload without what precedes the numbers."""
         text = text.rstrip("; ") if self.separator != ";" else text
-        found = [part.strip().strip('"') for part in text.split(self.separator)]
-        if self.unit and found and found[-1].lower() in UNIT_WORDS:
-            found.pop()
-        if self.decimal_comma:
-            found = [part.replace(",", ".") for part in found]
-        return found[self.lead:]
+        return [part.strip().strip('"') for part in text.split(self.separator)][self.lead:]
 
 
 def is_number(text):
     return IS_NUMBER.fullmatch(text) is not None
 
 
+def clocked(line):
+    """(time of the serial monitor or None, the rest)"""
+    match = CLOCKED.fullmatch(line)
+    return (match["boxed"] or match["arrowed"] or match["dated"], match["rest"]) if match else (None, line)
+
+
 def shape_of(line):
     """((clock, literal, keyword, names), payload) that one line suggests."""
-    clock = CLOCKED.fullmatch(line)
-    body = clock.group(2) if clock else line
+    clock, body = clocked(line)
     literal = LITERAL.fullmatch(body.strip())
     body = ESCAPED_ENDS.sub("", literal.group(2)) if literal else body
     pairs = PAIRS.findall(body)
     names = tuple(name.lower() for name, _ in pairs) if len(pairs) >= 3 else None
     keyword = None
     match = KEYED.fullmatch(body.strip())
-    if names is None and match and len(NUMBERS.findall(match.group(2))) >= 3:
+    if names is None and match and len(numbers_in(match.group(2))) >= 3:
         keyword, body = match.groups()
     return (clock is not None, literal is not None, keyword, names), body.strip()
 
 
+def numbers_in(text):
+    return NUMBERS.findall(UNIT.sub("", text))
+
+
 def separator_of(payloads):
-    """(separator, decimal comma?) that splits the most lines into at least three fields."""
-    comma_decimals = sum(";" in text and re.search(r"\d,\d", text) is not None and "." not in text and text.count(";") >= 2 for text in payloads)
-    if comma_decimals > len(payloads) // 2:
-        return ";", True
-    for separator in (",", ";", "\t"):
+    """What splits most payloads into at least three fields; None: white space."""
+    for separator in (",", ";", "\t", "|"):
         if sum(text.count(separator) >= 2 for text in payloads) > len(payloads) // 2:
-            return separator, False
-    return None, False
+            return separator
+    return None
 
 
 def plan_of(lines, sensor):
     """The plan of a file from its first lines; None if none holds three numbers. sensor: which of several keywords, from 1."""
     found = [shape_of(line.strip()) for line in lines if not line.lstrip().startswith("#")]
-    shapes = [(shape, text) for shape, text in found if len(NUMBERS.findall(text)) >= 3 and text[0] != "#"]
+    shapes = [(shape, text) for shape, text in found if len(numbers_in(text)) >= 3 and text[0] != "#"]
     if not shapes:
         return None
-    counts = Counter(shape for shape, _ in shapes)
     keywords = tuple(dict.fromkeys(shape[2] for shape, _ in shapes if shape[2] and re.search(r"\bacc", shape[2], re.I)))
-    chosen = counts.most_common(1)[0][0]
     if keywords:
         wanted = keywords[min(sensor, len(keywords)) - 1]
         chosen = next(shape for shape, _ in shapes if shape[2] == wanted)
-    clock, literal, keyword, names = chosen
-    plan = Plan(clock, literal, keyword, names, keywords=keywords)
-    payloads = [text for shape, text in shapes if shape == chosen]
-    plan.separator, plan.decimal_comma = separator_of(payloads)
-    if names is None:
-        strip_ends(plan, payloads)
     else:
-        words = payloads[0].split()
-        plan.unit = UNIT_WORDS.get(words[-1].lower())
+        chosen = usual_shape(Counter(shape for shape, _ in shapes))
+    plan = Plan(*chosen, keywords=keywords)
+    payloads = [text for shape, text in shapes if shape == chosen]
+    plan.decimal_comma = sum(len(DECIMAL_COMMA.findall(text)) >= 3 for text in payloads) > len(payloads) // 2
+    units = Counter(word.lower() for text in payloads for word in UNIT.findall(text)[-1:])
+    plan.unit = UNIT_WORDS[units.most_common(1)[0][0]] if units.total() > len(payloads) // 2 else None
+    payloads = [plan.tidy(text) for text in payloads]
+    plan.separator = separator_of(payloads)
+    if plan.names is None:
+        plan.lead = lead_of(plan, payloads)
     return plan
 
 
-def strip_ends(plan, payloads):
-    """Drops empty fields and words before the numbers of every row, and the unit after them."""
-    last = Counter(text.rstrip("; ").split(plan.separator)[-1].strip().lower() for text in payloads).most_common(1)[0][0]
-    plan.unit = UNIT_WORDS.get(last)
+def usual_shape(counts):
+    """The most frequent shape; of lines that alternate, the one of raw counts."""
+    most = max(counts.values())
+    return max(counts, key=lambda shape: (2 * counts[shape] > most and any(map(RAW_NAME.search, shape[3] or ())), counts[shape]))
+
+
+def lead_of(plan, payloads):
+    """How many empty fields or words precede the numbers of a row."""
     leads = Counter()
     for text in payloads:
         found = plan.cut(text)
         while found and not any(character.isdigit() for character in found[0]):
             found = found[1:]
         leads[len(plan.cut(text)) - len(found)] += 1
-    plan.lead = leads.most_common(1)[0][0]
+    return leads.most_common(1)[0][0]

@@ -1,18 +1,23 @@
 """Reads JSON: one reading per line, an array of readings, or Edge Impulse's payload."""
 import json
+import re
 
 import numpy as np
 
 from tilt.errors import TiltError, at
 from tilt.importing.columns import TIMES, axis_of, plain_name
 from tilt.importing.forms import UNIT_WORDS
-from tilt.importing.readings import Readings
+from tilt.importing.readings import MEND, Readings
 
 FREE = None  # decimals of numbers printed with all their digits
 
 
+BOXED = re.compile(rb"\[[^\[\]{}\r\n]*\]")  # a clock, or Python's print() of three numbers: lines of text
+
+
 def is_json(head):
-    return head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"[")
+    head = head.lstrip(b"\xef\xbb\xbf \t\r\n")
+    return head[:1] in (b"{", b"[") and not BOXED.match(head)
 
 
 def read(path, file, options):
@@ -30,7 +35,7 @@ def read(path, file, options):
 
 
 def unreadable(path, why):
-    raise at(path, getattr(why, "lineno", 1), f"not JSON: {getattr(why, 'msg', why)}")
+    raise at(path, getattr(why, "lineno", 1), f"not JSON: {getattr(why, 'msg', why)}{MEND}")
 
 
 def of_lines(path, text, options):
@@ -40,7 +45,7 @@ def of_lines(path, text, options):
                 try:
                     yield line, json.loads(row)
                 except ValueError as why:
-                    raise at(path, line, f"not JSON: {getattr(why, 'msg', why)}") from None
+                    raise at(path, line, f"not JSON: {getattr(why, 'msg', why)}{MEND}") from None
     return of_objects(path, parsed(), options, lines=True)
 
 
@@ -67,7 +72,7 @@ def of_objects(path, objects, options, lines):
         def place(reason, number=number):
             return at(path, number, reason) if lines else TiltError(f"{path}: object {number}: {reason}")
         if not isinstance(found, dict):
-            raise place("not an object with x, y, z")
+            raise place("not an object with x, y, z" + MEND * lines)
         if keys is None:
             keys, time_key = keys_of(path, place, found, options)
         values.append([number_at(found, key, place) for key in keys])
@@ -75,19 +80,19 @@ def of_objects(path, objects, options, lines):
             times.append(number_at(found, time_key, place))
         places.append(number)
     if not values:
-        raise TiltError(f"{path}: no rows")
+        raise TiltError(f"{path}: no rows: record again")
     return Readings(path, "JSON objects", np.array(values, dtype=np.float64), np.array(places) if lines else None,
                     np.array(times) if time_key is not None else None, TIMES.get(plain_name(time_key)[0]) if time_key is not None else None, FREE)
 
 
 def number_at(found, key, place):
     if key not in found:
-        raise place(f"no {key}")
+        raise place(f"no {key}: each object needs it, null if it is missing")
     value = found[key]
     if value is None:
         return np.nan
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not np.isfinite(value):
-        raise place(f"{key} is not a number: {value!r:.40}")
+        raise place(f"{key} is not a number: {value!r:.40}: write a number, or null")
     return float(value)
 
 
@@ -98,9 +103,9 @@ def of_payload(path, payload, options):
         units = [str(sensor.get("units", "")) for sensor in payload["sensors"]]
         rows, interval_ms = payload["values"], float(payload["interval_ms"])
     except (KeyError, TypeError, ValueError) as why:
-        raise TiltError(f"{path}: not an Edge Impulse file: the payload has no {why}") from None
+        raise TiltError(f"{path}: not an Edge Impulse file: the payload has no {why}: export the sample from its data acquisition page") from None
     if not rows:
-        raise TiltError(f"{path}: no rows")
+        raise TiltError(f"{path}: no rows: record again")
 
     def fault(reason):
         return TiltError(f"{path}: payload.sensors: {reason}")
@@ -111,9 +116,9 @@ def of_payload(path, payload, options):
         def place(reason, number=number):
             return TiltError(f"{path}: payload.values[{number}]: {reason}")
         if not isinstance(row, list) or len(row) != len(names):
-            raise place(f"{len(row) if isinstance(row, list) else 1} values for {len(names)} sensors")
+            raise place(f"{len(row) if isinstance(row, list) else 1} values for {len(names)} sensors: correct or delete this row")
         values.append([number_at(dict(enumerate(row)), column, place) for column in columns])
     if not 0.0 < interval_ms < 1e6:
-        raise TiltError(f"{path}: payload.interval_ms is {interval_ms:g}")
+        raise TiltError(f"{path}: payload.interval_ms is {interval_ms:g}: write the time between rows")
     return Readings(path, "Edge Impulse", np.array(values, dtype=np.float64), None, np.arange(len(values)) * interval_ms, "ms", FREE,
                     UNIT_WORDS.get(units[columns[0]].lower()))

@@ -7,6 +7,7 @@ import numpy as np
 from tilt.errors import TiltError, at
 
 FLAG_COASTED, FLAG_SILENT = 2, 16
+MEND = ": correct or delete this line"
 MISSING_FLAGS = FLAG_COASTED | FLAG_SILENT  # docs/protocol.md: rows with these are not readings
 
 
@@ -47,7 +48,7 @@ def joined(readings):
     first = readings[0]
     for other in readings[1:]:
         if kind_of(other) != kind_of(first):
-            raise TiltError(f"{other.path}: not in the form of {first.path}: times, units or columns differ")
+            raise TiltError(f"{other.path}: not in the form of {first.path}: times, units or columns differ: import it alone")
     starts = np.cumsum([0] + [len(part.values) for part in readings])
 
     def together(name):

@@ -13,7 +13,7 @@ from tilt.importing import forms
 
 SAMPLE_LINES, SAMPLE_ROWS = 4000, 400
 NAME = re.compile(r"[A-Za-z_][\w ()/^*.-]*")
-WALL = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)")
+WALL = re.compile(r"(?:\d{1,2}[./-]\d{1,2}[./-]\d{4},? )?(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)")
 DATED = re.compile(r"\d{4}-\d{2}-\d{2}[ T]\d{2}:\d{2}:\d{2}(?:[.,]\d+)?(?:Z|[+-]\d{2}:?\d{2})?")
 
 
@@ -52,8 +52,7 @@ def header_cells(line, wanted=frozenset()):
     if text.startswith("##"):
         return None
     text = text.lstrip("#").strip()
-    clock = forms.CLOCKED.fullmatch(text)
-    text = clock.group(2) if clock else text
+    _, text = forms.clocked(text)
     for separator in (",", ";", "\t", None):
         cells = [cell.strip() for cell in text.split(separator)]
         if cols.is_header(cells, wanted):
@@ -110,7 +109,7 @@ def width_of(path, header, rows):
         return width - 1, 1, None
     if whole_sensors(header, width):
         return width, 0, f"rows of {width} fields under a header of {len(header)}: the last {(len(header) - width) // 3} sensors are missing"
-    raise at(path, line, f"{len(rows[0][1])} fields where the header has {len(header)}")
+    raise at(path, line, f"{len(rows[0][1])} fields where the header has {len(header)}: name every column in it, or delete it")
 
 
 def columns_of(path, options, header, rows, width):
@@ -121,7 +120,7 @@ def columns_of(path, options, header, rows, width):
     else:
         chosen = cols.of_numbers(numbers_of(rows, width), path)
     if max(chosen.axes + (chosen.time or 0,)) >= width:
-        raise TiltError(f"{path}: column {max(chosen.axes + (chosen.time or 0,)) + 1} requested, but rows have {width}")
+        raise TiltError(f"{path}: column {max(chosen.axes + (chosen.time or 0,)) + 1} requested, but rows have {width}: count from 1 in --columns")
     return chosen
 
 
@@ -141,6 +140,12 @@ def decimals_of(rows, axes):
     return max([len(cell.partition(".")[2].rstrip()) + (20 if "e" in cell.lower() else 0) for cell in cells] or [0])
 
 
+def no_rows_hint(lines):
+    if any(re.match(r"\W*(?:\d+:[\d:.]+ -> )?x\w*\s*[=:]\s*-?\d", line, re.I) for line in lines):
+        return "x, y and z are on lines of their own, print them on one line"
+    return "each row needs x, y and z, for example 12,-3,250"
+
+
 def settle(path, options, lines, first_line):
     """Settles the first lines of a file. options: sensor, columns. TiltError if it is not a recording."""
     header = find_header(lines, cols.names_in(options.columns))
@@ -148,12 +153,12 @@ def settle(path, options, lines, first_line):
     if header and not options.columns:
         cols.of_header(header, path, 1)  # a spectrum, or not accelerations
     if plan is None and header:
-        raise TiltError(f"{path}: only a header, no rows of numbers")
+        raise TiltError(f"{path}: only a header, no rows of numbers: record again")
     if plan is not None and header:
         plan.lead = 0
     rows = sampled(plan, lines, first_line) if plan else []
     if not rows:
-        raise TiltError(f"{path}: not a recording: no row of three numbers in its first {len(lines)} lines")
+        raise TiltError(f"{path}: not a recording: no row of three numbers in its first {len(lines)} lines: {no_rows_hint(lines)}")
     header = list(plan.names) if plan.names is not None else header or unknown_header(plan, lines, rows, first_line)
     width, trail, note = width_of(path, header, rows)
     chosen = columns_of(path, options, header, rows, width)

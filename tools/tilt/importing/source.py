@@ -29,10 +29,10 @@ def begin(path):
         with open(path, "rb") as file:
             head = file.read(PROBE_BYTES)
     except OSError as why:
-        raise TiltError(f"{path}: {why.strerror}") from None
+        raise TiltError(f"{path}: {why.strerror}: give a recording's path") from None
     if not head:
-        raise TiltError(f"{path}: the file is empty")
-    for marks, words in ((PACKED, "packed with {}: unpack it first"), (STRANGE, "this is {}, not a recording")):
+        raise TiltError(f"{path}: the file is empty: record again")
+    for marks, words in ((PACKED, "packed with {}: unpack it first"), (STRANGE, "this is {}, not a recording: export the readings as CSV")):
         for mark, name in marks.items():
             if head.startswith(mark):
                 raise TiltError(f"{path}: {words.format(name)}")
@@ -50,10 +50,10 @@ def as_text(path, file, head):
             try:
                 return io.BytesIO(file.read().decode(encoding).encode("utf-8"))
             except UnicodeDecodeError as why:
-                raise TiltError(f"{path}: begins as UTF-16, but is not valid at byte {why.start}") from None
+                raise TiltError(f"{path}: begins as UTF-16, but is not valid at byte {why.start}: save it as UTF-8") from None
     strange = sum(byte < 32 and byte not in b"\t\n\r\f" for byte in head[:4096])
     if b"\0" in head or strange > len(head[:4096]) // 10:
-        raise TiltError(f"{path}: binary data in an unknown format (known: text, JSON, the AX3's CWA)")
+        raise TiltError(f"{path}: binary data in an unknown format (known: text, JSON, the AX3's CWA): export the readings as CSV")
     if head.startswith(codecs.BOM_UTF8):
         file.seek(len(codecs.BOM_UTF8))
     return file

@@ -8,7 +8,7 @@ import numpy as np
 from tilt.errors import TiltError, at
 from tilt.importing import forms
 from tilt.importing.columns import names_in
-from tilt.importing.readings import Readings
+from tilt.importing.readings import MEND, Readings
 from tilt.importing.settle import SAMPLE_LINES, header_cells, number_or_time, settle
 from tilt.importing.source import blocks
 
@@ -103,7 +103,7 @@ class Reader:
             return None
         if len(cells) != settled.width:
             whose = "the header has" if settled.header and len(settled.header) == settled.width else "the other rows have"
-            raise at(self.path, line, f"{len(cells)} fields where {whose} {settled.width}")
+            raise at(self.path, line, f"{len(cells)} fields where {whose} {settled.width}{MEND}")
         return self.numbers(line, cells, time)
 
     def is_row(self, cells, body, before):
@@ -127,8 +127,9 @@ class Reader:
         """A line that is not a row: text is skipped and reported, unless it holds the numbers of a row."""
         if self.settled.plan.keyword is not None:
             return
-        if len(forms.NUMBERS.findall(text)) >= 3 and not any(c.isalpha() for c in text.replace("e", "").replace("E", "")):
-            raise at(self.path, line, f"not in the form of the other rows: '{text[:SHOWN]}'")
+        _, body = forms.clocked(text)
+        if len(forms.numbers_in(body)) >= 3 and not any(c.isalpha() for c in body.replace("e", "").replace("E", "")):
+            raise at(self.path, line, f"not in the form of the other rows: '{text[:SHOWN]}'{MEND}")
         self.skipped.append((line, text))
 
     def numbers(self, line, cells, clock):
@@ -144,7 +145,7 @@ class Reader:
         except ValueError:
             value = np.inf if place == TIME or text.lower() not in ABSENT else np.nan
         if abs(value) == np.inf or "_" in text or (place == TIME and value != value):
-            raise at(self.path, line, f"not a number: '{text[:SHOWN]}'")
+            raise at(self.path, line, f"not a number: '{text[:SHOWN]}'{MEND}")
         return value
 
 
@@ -154,7 +155,7 @@ def read(path, file, head, options):
     for line, block in blocks(path, file, head):
         reader.take(line, block)
     if not reader.count:
-        raise TiltError(f"{path}: no rows")
+        raise TiltError(f"{path}: no rows: record again")
     settled, columns = reader.settled, reader.settled.columns
     table, lines = np.concatenate(reader.parts), np.concatenate(reader.lines)
     timed = columns.time is not None or settled.plan.clock
@@ -168,7 +169,7 @@ def whole(reader, column, lines, name):
     """A column of whole numbers."""
     bad = np.flatnonzero(column != np.rint(column))
     if len(bad):
-        raise at(reader.path, int(lines[bad[0]]), f"{name} is not a whole number")
+        raise at(reader.path, int(lines[bad[0]]), f"{name} is not a whole number{MEND}")
     return column.astype(np.int64)
 
 

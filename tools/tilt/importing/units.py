@@ -81,7 +81,7 @@ def choose(path, values, decimals, unit, notes, other_sensors=False):
     """The Scale of a recording. unit: None, one of UNITS, or as the file states it. TiltError if none can be determined."""
     sample = sample_of(values)
     if len(sample) == 0:
-        raise TiltError(f"{path}: every reading is missing")
+        raise TiltError(f"{path}: every reading is missing: record again")
     digit = FREE_DIGIT if decimals is None else 10.0 ** -decimals
     found = [tried(scale, sample, digit) for scale in candidates(unit)]
     fitting = [scale for scale in found if scale.fits]
@@ -137,5 +137,5 @@ def to_lsb(readings, scale, notes):
     if len(bad):
         row = int(bad[0])
         raise readings.fault(row, f"{', '.join(str(v) for v in whole[row])} LSB by {scale.unit} of {scale.words}: outside an ADXL345's "
-                             f"{LSB_MIN}..{LSB_MAX}")
+                             f"{LSB_MIN}..{LSB_MAX}: correct or delete this line, or give --unit")
     return whole, missing

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""A corpus of bad inputs to every command: each ends with status 2 and one line that names a remedy, never with a traceback, and leaves no file.
+Run from the repository root with build/venv/bin/python."""
+import contextlib
+import gzip
+import io
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+from tilt import cli  # noqa: E402
+
+ROWS = "".join(f"{10000 * i},{i % 3},{-i % 5},{256 + i % 2}\n" for i in range(40))
+STREAM, HEADER = "t_us,x,y,z\n" + ROWS, "t_us,x,y,z\n"
+IN_G = "t_us,x,y,z\n" + "".join(f"{10000 * i},0.0{i % 3},-0.01,0.98\n" for i in range(40))
+READERS = ("replay FILE", "compare FILE", "tune FILE", "plot FILE")
+SEE, IMPORT, MEND = "see tilt ", "tilt import FILE", "correct or delete"
+
+# (what the file holds, what every reader of streams says)
+STREAMS = (
+    ("", "is empty"), ("# x\n", "no header"), (HEADER, "no rows"), (IN_G, IMPORT), (STREAM.encode("utf-16"), IMPORT),
+    ("time,x,y,z\n0,1,2,3\n", IMPORT),
+    ("12,3,250\n", IMPORT), ("X: 1 Y: 2 Z: 3\n", IMPORT), (HEADER + "0,1,2\n", "the header has 4"), (HEADER + "20,0,0,0\n10,0,0,0\n", "backwards"),
+    (HEADER + "0,5000,0,0\n", "outside -4096..4095"))
+# (what the file holds, options, remedy)
+IMPORTS = (
+    ("", "", "record again"), ("Dear reader\n", "", "needs x, y and z"), ("x: 1\ny: 2\nz: 3\n" * 9, "", "print them on one line"),
+    (gzip.compress(b"1,2,3\n"), "", "unpack"), (b"\x89PNG\r\n\x1a\n....", "", "export"), (bytes(range(256)), "", "export"),
+    (STREAM.encode("utf-16")[:-1], "", "save it as UTF-8"), (HEADER, "", "record again"), ("1,2\n" * 9, "", "needs x, y and z"),
+    ("1,2,250\n" * 9, "", "give the rate with --rate"), ("count,x,y,z\n1,1,2,250\n2,1,2,250\n", "", "give the rate with --rate"),
+    ("time,x,y,z\n" + "5,1,2,250\n" * 9, "", "give the rate with --rate"), ("t_ms,x,y,z\n0,1,2,250\n10,1,2x,250\n", "", MEND),
+    ("t_ms,x,y,z\n0,1,2,250\n10,1,2,250\n15,1,2\n20,1,2,250\n", "", MEND), ("t_ms,x,y,z\n20,1,2,250\n10,1,2,250\n", "", "split the file"),
+    ("t_ms,x,y,z\n0,1,2,250\n10,1,2,9999\n", "", MEND), ("t_ms,temp,hum,p\n0,1,2,250\n10,1,2,9\n", "", "--columns"),
+    ("freq,psd_x,psd_y,psd_z\n1,2,3,4\n", "", "import the raw data"), ("a,b,c\n1,2,250\n", "--columns 1,2", "give three"),
+    ("a,b,c\n1,2,250\n", "--columns a,b,q", "among"), ("a,b,c\n1,2,250\n", "--columns 1,2,9", "count from 1"),
+    ("t_ms,x,y,z\n" + "".join(f"{10 * i},{0.123 + i / 7},{i / 3},250.4\n" for i in range(40)), "", "--unit N"),
+    ("x,y,z\n1,2,250\n", "--unit furlong", "give one of"), ("x,y,z\n1,2,250\n", "--rate fast", SEE), ("x,y,z\n1,2,250\n", "--sensor 0", SEE),
+    ("x,y,z\n1,2,250\n", "--rate 10 --sensor 2", "count from 1"), ('{"a": 1, "b": 2}\n', "", "--columns"), ('{"x": 1, "y": 2}\n', "", "--columns"),
+    ('{"x": 1, "y": 2, "z": "3"}\n', "", "write a number"), ('{"x": 1,\n', "", MEND), (b"MD\xfc\x03" + bytes(100), "", "export"),
+    ("t_ms,x,y,z,w\n0,1,2,250\n", "", "name every column"), ("t_ms,x,y,z\n0,,,\n", "", "record again"))
+# (command line, remedy); FILE is a good stream, OUT a file that is not there
+LINES = (
+    ("", SEE), ("foo", "choose from"), ("replay", SEE), ("replay missing.csv", "No such file"), ("replay FILE --rate 90", "choose from"),
+    ("replay FILE --rate x", SEE), ("replay FILE --range 3", "choose from"), ("replay FILE --filter foo", "choose from"),
+    ("replay FILE --filter kf,kf", "give it once"), ("replay FILE -o FILE", "another name"), ("replay FILE -o no/where.csv", "No such file"),
+    ("compare FILE --filter foo", "choose from"), ("compare FILE --rate 1_0", SEE), ("compare DIR", "Is a directory"),
+    ("tune FILE --filter foo", "choose from"), ("tune FILE --filter kf,sprf", "give one filter"), ("tune FILE --nope", SEE),
+    ("plot FILE -o OUT.gif", ".png .svg .html"), ("plot FILE --columns q", "choose from"), ("plot FILE --columns ,", "name at least one"),
+    ("plot FILE --from x", SEE), ("plot FILE -o no/where.png", "No such file"), ("plot", SEE), ("import FILE -o FILE", "another name"),
+    ("import missing.csv", "give a recording's path"), ("import DIR", "give a recording's path"), ("import FILE FILE -o OUT.csv", "give one FILE"),
+    ("record FILE", "give one, such as"), ("record missing", "port"), ("record FILE --baud 12345", "choose from"),
+    ("record FILE --seconds 0", "give a time"),
+    ("record FILE --seconds 1_0", SEE), ("record FILE -o FILE", "--force"), ("record FILE -o no/where.csv", "no folder"),
+    ("live FILE", "give one, such as"))
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.place = pathlib.Path(place.name)
+        self.file = self.place / "given.csv"
+
+    def refused(self, line, content, remedy):
+        self.file.write_bytes(content if isinstance(content, bytes) else content.encode())
+        names = {"FILE": str(self.file), "DIR": str(self.place), "no": str(self.place / "no"), "OUT": str(self.place / "out"),
+                 "missing": str(self.place / "missing")}
+        words = []
+        for word in line.split():
+            first = next((name for name in names if word == name or word.startswith((f"{name}.", f"{name}/"))), None)
+            words.append(names[first] + word.removeprefix(first) if first else word)
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            try:
+                status = cli.main(words)
+            except SystemExit as stop:
+                status = stop.code
+        with self.subTest(line, content=content[:40]):
+            self.assertEqual((status, out.getvalue()), (2, ""), err.getvalue())
+            self.assertRegex(err.getvalue(), r"\Atilt[^\n]*: [^\n]+\n\Z")
+            self.assertIn(remedy, err.getvalue())
+            self.assertEqual([path.name for path in self.place.iterdir()], [self.file.name])
+
+
+class Corpus(Case):
+    def test_there_are_66_and_more(self):
+        self.assertGreaterEqual(len(STREAMS) * len(READERS) + len(IMPORTS) + len(LINES), 66)
+
+    def test_files_that_are_no_streams(self):
+        for content, remedy in STREAMS:
+            for line in READERS:
+                self.refused(line, content, remedy)
+
+    def test_files_that_cannot_be_imported(self):
+        for content, options, remedy in IMPORTS:
+            self.refused(f"import FILE -o OUT.csv {options}", content, remedy)
+
+    def test_command_lines(self):
+        for line, remedy in LINES:
+            self.refused(line, STREAM, remedy)
+
+
+if __name__ == "__main__":
+    from unity_line import main
+    main()
