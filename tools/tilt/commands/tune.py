@@ -36,6 +36,8 @@ def measured(stream, name, rate_dhz):
     with bar("parameters", "round") as report:
         fit = fitting.fitted(samples, name, report)
     values = typed_in_order(name, rate_dhz, fit.values)
+    if values is None:
+        fit.values, values, fit.fitted_lsb, fit.reason = {}, [], fit.default_lsb, "no order in which the board would accept the better values"
     noise = None if samples.rest.r_lsb2 is None else np.sqrt(samples.rest.r_lsb2).tolist()
     return {"stream": stream.path, "filter": name, "rate_hz": rate_dhz / 10, "motion_seconds": samples.motion_s,
             "rest_seconds": samples.rest.seconds, "noise_lsb": noise, "default_lsb": fit.default_lsb, "fitted_lsb": fit.fitted_lsb,
@@ -44,14 +46,14 @@ def measured(stream, name, rate_dhz):
 
 
 def typed_in_order(name, rate_dhz, values):
-    """`NAME VALUE` of each, in an order in which the filter accepts every one; values that depend on each other have few."""
+    """`NAME VALUE` of each, in an order in which the filter accepts every one, or None; values that depend on each other have few."""
     from tilt import native
 
     every = native.parameters(name, rate_dhz)
     for order in itertools.permutations(values):
         if all(native.accepts(name, rate_dhz, {key: values[key] for key in order[:count]}) for count in range(1, len(order) + 1)):
             return [f"{key} {every[key].text(values[key])}" for key in order]
-    raise TiltError(f"{name}: no order in which to type {', '.join(values)}: choose another filter with --filter")
+    return None
 
 
 def lines(answer):
@@ -62,8 +64,8 @@ def lines(answer):
     if not answer["commands"]:
         return said + [f"keep the defaults of {answer['filter']}: {answer['reason']}"]
     better = 100.0 * (answer["fitted_lsb"] / answer["default_lsb"] - 1.0)
-    return said + [f"{answer['filter']}: {answer['default_lsb']:.2f} LSB rms from the smoothed recording with the defaults, {answer['fitted_lsb']:.2f} "
-                   f"({better:+.1f} %) with these values; {100.0 * (answer['held_back'] - 1.0):+.1f} % on parts that they were not fitted to",
+    return said + [f"{answer['filter']}: {answer['default_lsb']:.2f} LSB rms from the smoothed recording with the defaults, "
+                   f"{answer['fitted_lsb']:.2f} ({better:+.1f} %) with these values; {100.0 * (answer['held_back'] - 1.0):+.1f} % on parts that they were not fitted to",
                    f"flash: {answer['flash']}", "", *answer["commands"]]
 
 
