@@ -46,7 +46,8 @@ IMPORTS = (
 LINES = (
     ("", SEE), ("foo", "choose from"), ("replay", SEE), ("replay missing.csv", "No such file"), ("replay FILE --rate 90", "choose from"),
     ("replay FILE --rate x", SEE), ("replay FILE --range 3", "choose from"), ("replay FILE --filter foo", "choose from"),
-    (f"replay FILE --filter {PLAIN},{PLAIN}", "give it once"), ("replay FILE -o FILE", "another name"), ("replay FILE -o no/where.csv", "No such file"),
+    (f"replay FILE --filter {PLAIN},{PLAIN}", "give it once"),
+    ("replay FILE -o FILE", "another name"), ("replay FILE -o no/where.csv", "No such file"),
     ("compare FILE --filter foo", "choose from"), ("compare FILE --rate 1_0", SEE), ("compare DIR", "Is a directory"),
     ("tune FILE --filter foo", "choose from"), (f"tune FILE --filter {PLAIN},{ROBUST}", "give one filter"), ("tune FILE --nope", SEE),
     ("plot FILE -o OUT.gif", ".png .svg .html"), ("plot FILE --columns q", "choose from"), ("plot FILE --columns ,", "name at least one"),

@@ -170,7 +170,8 @@ class Commands(Case):
         return status, out
 
     def test_apply_types_them_and_reads_the_answers(self):
-        status, out = self.applied((b"filter ", b"# filter %s\n" % PLAIN.encode()), (b"rate 100\n", b"# rate 100 Hz\n"), (b"q ", b"# q 50000 LSB2/s3: 1 to 1e9\n"))
+        status, out = self.applied((b"filter ", b"# filter %s\n" % PLAIN.encode()), (b"rate 100\n", b"# rate 100 Hz\n"),
+                                   (b"q ", b"# q 50000 LSB2/s3: 1 to 1e9\n"))
         self.assertEqual(status, 0, out)
         self.assertIn(": # q 50000 LSB2/s3", out)
         self.assertTrue(out.endswith("set; type save to keep them\n"), out)

@@ -65,7 +65,8 @@ def lines(answer):
         return said + [f"keep the defaults of {answer['filter']}: {answer['reason']}"]
     better = 100.0 * (answer["fitted_lsb"] / answer["default_lsb"] - 1.0)
     return said + [f"{answer['filter']}: {answer['default_lsb']:.2f} LSB rms from the smoothed recording with the defaults, "
-                   f"{answer['fitted_lsb']:.2f} ({better:+.1f} %) with these values; {100.0 * (answer['held_back'] - 1.0):+.1f} % on parts that they were not fitted to",
+                   f"{answer['fitted_lsb']:.2f} ({better:+.1f} %) with these values; "
+                   f"{100.0 * (answer['held_back'] - 1.0):+.1f} % on parts that they were not fitted to",
                    f"flash: {answer['flash']}", "", *answer["commands"]]
 
 
