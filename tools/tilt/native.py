@@ -247,6 +247,15 @@ def flashed_by(name):
     return "make flash" if holding[0] == names[0] else f"make flash FILTERS={holding[0]}"
 
 
+def accepts(name, rate_dhz, values):
+    """Whether the filter takes these values, the others at their defaults."""
+    try:
+        axis(name, rate_dhz, np.zeros(1, np.int16), np.full(1, THERE), values)
+    except TiltError:
+        return False
+    return True
+
+
 def axis(name, rate_dhz, z_lsb, state, values=None, r_lsb2=None, noisy_axis=False):
     """Probes (PROBE) of one axis after a filter. values: {parameter: in its unit}, the others at their defaults; R fixed, or None: estimated
     as the firmware does. TiltError if the filter rejects its parameters."""

@@ -44,10 +44,10 @@ def missed(readings, kept, cut_hz, rate_hz):
     return sum(float(np.sum((readings - low_pass(readings, one, cut_hz, rate_hz))[other] ** 2)) for one, other in (halves, halves[::-1]))
 
 
-def smoothed(lsb, there, rate_hz):
-    """The reference in LSB, (rows, 3). there: per row and axis, whether a reading is one."""
+def smoothed(lsb, there, rate_hz, cuts_hz=CUTS_HZ):
+    """The reference in LSB, (rows, 3), at the best of these cuts. there: per row and axis, whether a reading is one."""
     axes = [(lsb[:, axis].astype(float), inliers(lsb[:, axis].astype(float), there[:, axis], rate_hz)) for axis in range(3) if there[:, axis].any()]
-    cut_hz = min(CUTS_HZ, key=lambda cut: sum(missed(*axis, cut, rate_hz) for axis in axes))
+    cut_hz = min(cuts_hz, key=lambda cut: sum(missed(*axis, cut, rate_hz) for axis in axes))
     found = [low_pass(*axis, cut_hz, rate_hz) for axis in axes]
     return np.column_stack(found) if len(found) == 3 else lsb.astype(float)
 

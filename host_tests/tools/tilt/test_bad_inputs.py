@@ -11,6 +11,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
+from laws import PLAIN, ROBUST  # noqa: E402
 from tilt import cli  # noqa: E402
 
 ROWS = "".join(f"{10000 * i},{i % 3},{-i % 5},{256 + i % 2}\n" for i in range(40))
@@ -45,9 +46,10 @@ IMPORTS = (
 LINES = (
     ("", SEE), ("foo", "choose from"), ("replay", SEE), ("replay missing.csv", "No such file"), ("replay FILE --rate 90", "choose from"),
     ("replay FILE --rate x", SEE), ("replay FILE --range 3", "choose from"), ("replay FILE --filter foo", "choose from"),
-    ("replay FILE --filter kf,kf", "give it once"), ("replay FILE -o FILE", "another name"), ("replay FILE -o no/where.csv", "No such file"),
+    (f"replay FILE --filter {PLAIN},{PLAIN}", "give it once"),
+    ("replay FILE -o FILE", "another name"), ("replay FILE -o no/where.csv", "No such file"),
     ("compare FILE --filter foo", "choose from"), ("compare FILE --rate 1_0", SEE), ("compare DIR", "Is a directory"),
-    ("tune FILE --filter foo", "choose from"), ("tune FILE --filter kf,sprf", "give one filter"), ("tune FILE --nope", SEE),
+    ("tune FILE --filter foo", "choose from"), (f"tune FILE --filter {PLAIN},{ROBUST}", "give one filter"), ("tune FILE --nope", SEE),
     ("plot FILE -o OUT.gif", ".png .svg .html"), ("plot FILE --columns q", "choose from"), ("plot FILE --columns ,", "name at least one"),
     ("plot FILE --from x", SEE), ("plot FILE -o no/where.png", "No such file"), ("plot", SEE), ("import FILE -o FILE", "another name"),
     ("import missing.csv", "give a recording's path"), ("import DIR", "give a recording's path"), ("import FILE FILE -o OUT.csv", "give one FILE"),

@@ -20,6 +20,7 @@ NO_DATA = ("uav-absent-sensor",)
 OUTLIER_SHARE, BAD_READS = 0.01, 1e-3
 LINES_MAX = 12_000  # of a recording: two minutes at 100 Hz
 NEAR, WORST, SHARE = 1.1, 1.3, 0.8
+NO_RECORDINGS = "no ../shared/streams (RECORDINGS=folder)"
 
 
 def recordings():
@@ -75,7 +76,7 @@ def ratio_of(path, rng):
     return named, errors[named] / min(error for name, error in errors.items() if name not in native.published_only())
 
 
-@unittest.skipUnless(recordings(), "no ../shared/streams (RECORDINGS=folder)")
+@unittest.skipUnless(recordings(), NO_RECORDINGS)
 class Recordings(unittest.TestCase):
     def test_the_named_filter_is_near_the_best(self):
         print("seed 20261128")

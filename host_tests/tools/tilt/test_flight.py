@@ -321,7 +321,7 @@ class Command(unittest.TestCase):
                 with self.assertRaises(SystemExit) as ended, contextlib.redirect_stderr(io.StringIO()) as said:
                     cli.main(list(words))
                 self.assertEqual(ended.exception.code, 2)
-                self.assertRegex(said.getvalue(), rf"flight: --\S+: '{text}' is not a (whole )?number")
+                self.assertRegex(said.getvalue(), rf"tilt (flight|nav): --\S+: '{text}' is not a (whole )?number")
             self.assertEqual(run("nav", "--board", "pc", "--set", f"field={text},1,{text}")[0], 2)
         self.assertIn("--set needs NAME=NUMBER", run("nav", "--board", "pc", "--set", "gate=1_0")[1])
         self.assertIn("give A:B", run("flight", "x.csv", "--without-gps", "1:\u0663")[1])

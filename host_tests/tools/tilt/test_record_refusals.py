@@ -12,7 +12,7 @@ import test_record  # noqa: E402
 from fake_board import BANNER, HEADER, rows  # noqa: E402
 from tilt import protocol  # noqa: E402
 
-REFUSAL = "refused 4: filter is one of adaptive sprf kf synth; make flash FILTERS=NAME"
+REFUSAL = "refused 4: filter is one of one two; make flash FILTERS=NAME"
 
 
 class Commands(test_record.Case):
@@ -37,7 +37,7 @@ class Commands(test_record.Case):
 
     def test_answers_are_status_0(self):
         answers = [(b"rate 100", b"# rate 100 Hz\n"), (b"LOAD", b"# settings: as saved\n"), (b"status", b"# state streaming\n# reset: power on\n"),
-                   (b"version", BANNER.splitlines()[1] + b"\n"), (b"tare", b"# tare: hold still\n"), (b"?", b"# filter adaptive\n")]
+                   (b"version", BANNER.splitlines()[1] + b"\n"), (b"tare", b"# tare: hold still\n"), (b"?", b"# filter one\n")]
         self.assertEqual(self.sent(answers, *(heard.decode() for heard, _ in answers))[0], 0)
 
     def test_another_line_is_no_answer(self):
