@@ -25,7 +25,7 @@ void float_af_start(float_af_t *f, const filter_config_t *config, float x0_lsb)
 
 void float_af_set_noise(float_af_t *f, float r_lsb2)
 {
-    f->mixture.r = r_lsb2;
+    f->mixture.tracker.r = r_lsb2;
 }
 
 float float_af_coast(float_af_t *f)
@@ -44,5 +44,5 @@ float float_af_update(float_af_t *f, int16_t z_lsb)
     float m = outlier + p * (normal - outlier);
     float spread = innovation * (normal - outlier);
     float_mixture_apply(&f->mixture, innovation, m, m - p * (1.0f - p) * spread * spread);
-    return f->mixture.x;
+    return f->mixture.tracker.x;
 }

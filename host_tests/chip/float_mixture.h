@@ -2,12 +2,10 @@
 #ifndef FLOAT_MIXTURE_H
 #define FLOAT_MIXTURE_H
 
-#include "float_filters.h"
+#include "float_tracker.h"
 
 typedef struct {
-    float x, v;
-    float p00, p01, p10, p11;
-    float dt, q, r;
+    float_tracker_t tracker;
     float ratio2; /* N^2 */
     float clean;  /* probability of a normal sample */
     float count;  /* samples that it is learnt from; 0: given */

@@ -24,7 +24,7 @@ void float_pbf_start(float_pbf_t *f, const filter_config_t *config, float x0_lsb
 
 void float_pbf_set_noise(float_pbf_t *f, float r_lsb2)
 {
-    f->mixture.r = r_lsb2;
+    f->mixture.tracker.r = r_lsb2;
 }
 
 float float_pbf_coast(float_pbf_t *f)
@@ -41,5 +41,5 @@ float float_pbf_update(float_pbf_t *f, int16_t z_lsb)
     float m = outlier + p * (normal - outlier);
     float spread = innovation * (normal - outlier);
     float_mixture_apply(&f->mixture, innovation, m, m - p * (1.0f - p) * spread * spread);
-    return f->mixture.x;
+    return f->mixture.tracker.x;
 }

@@ -24,7 +24,7 @@ void float_shrf_start(float_shrf_t *f, const filter_config_t *config, float x0_l
 
 void float_shrf_set_noise(float_shrf_t *f, float r_lsb2)
 {
-    f->mixture.r = r_lsb2;
+    f->mixture.tracker.r = r_lsb2;
 }
 
 float float_shrf_coast(float_shrf_t *f)
@@ -41,5 +41,5 @@ float float_shrf_update(float_shrf_t *f, int16_t z_lsb)
     float m = p * normal;
     float spread = innovation * normal;
     float_mixture_apply(&f->mixture, innovation, m, m - p * (1.0f - p) * spread * spread);
-    return f->mixture.x;
+    return f->mixture.tracker.x;
 }
