@@ -1,4 +1,10 @@
 # Targets of make one after another, for .ci/run and campaigns/nightly.sh, which set $who and end with `ended`. bash.
+# pyenv's python3 is a script that takes longer to start than Python itself
+python=$(python3 -c 'import sys; print(sys.executable)' 2> /dev/null)
+if [ -x "$python" ] && ! [ "$python" -ef "$(command -v python3)" ]; then
+    PATH=${python%/*}:$PATH
+fi
+
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 passed=0

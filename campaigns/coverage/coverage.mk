@@ -46,8 +46,8 @@ $(C)/probe.prof: $(C)/probe.elf $(S)/simrun
 	@$(S)/simrun --fw $< --in sim/streams/tilt-fast.csv --out $(C)/probe.txt --profile $@ --max-ms 100 2> $(C)/probe.log; \
 	    test $$? -eq 8 || { cat $(C)/probe.log; exit 1; }
 
-# Runs of the system tests, unless PROFILES says where they have left theirs already. A profile slows the simulator down, and the minutes in
-# which nothing is lost are left out: they run hardly any line that the others do not. Two halves side by side.
+# Runs of the system tests, unless PROFILES says where they have left theirs already. The minutes in which nothing is lost are left out: they run
+# hardly any line that the others do not. Two halves side by side.
 COVERAGE_RUNS := $(if $(PROFILES),,$(C)/runs/equal $(C)/runs/rest)
 $(C)/runs/equal: RUNS_OF := chip_equals
 $(C)/runs/rest: RUNS_OF := -chip_equals -nothing_lost

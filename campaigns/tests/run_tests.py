@@ -30,8 +30,8 @@ SHARES = {"system_tests": 6}  # tests that are run as so many programs, each wit
 # what a test is taken to need that has never run here, in seconds of a processor: of its kind, and of those that are known to need more
 UNKNOWN_S = {"python": 5, "chip": 4, "program": 1}
 LONG_S = {"bitexact": 75, "system_tests": 48, "test_papers": 33, "test_nav_image": 30, "test_design": 28, "test_resets": 27,
-          "chip_filter_sequence_2": 26, "exhaustive_isqrt": 23, "test_design_command": 23, "chip_filter_sequence_1": 21, "chip_test_auto": 20,
-          "chip_test_filter_gaps": 19, "test_compile_commands": 17, "test_design_refusals": 16, "test_papers_synthesis": 15,
+          "exhaustive_isqrt": 23, "test_design_command": 23, "test_demo_page": 40, "test_demo": 25,
+          "test_compile_commands": 17, "test_design_refusals": 16, "test_papers_synthesis": 15,
           "test_recording_faults": 15, "tilt_replay": 15, "test_adaptive_reference": 11, "test_recordings": 10,
           "tilt_board_played": 30}
 

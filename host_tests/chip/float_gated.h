@@ -41,7 +41,7 @@ static inline float gated_coast(float_gated_t *g)
     return g->tracker.x;
 }
 
-static void gated_limit_rate(float_gated_t *g)
+static inline void gated_limit_rate(float_gated_t *g)
 {
     if (g->tracker.v > g->rate_max) {
         g->tracker.v = g->rate_max;

@@ -44,12 +44,6 @@ TEST(test_streams_are_as_described)
                               sqrt(squares[PHASE_VIBRATION] / counts[PHASE_VIBRATION]));
 }
 
-static filter_t begun(const filter_law_t *law, const filter_config_t *config)
-{
-    filter_t f = made(law, config);
-    return f;
-}
-
 /* As shipped at 10 Hz; the others with the parameters that board_phases of make papers finds on other runs. */
 TEST(test_errors_on_the_tilt_streams)
 {
@@ -64,9 +58,9 @@ TEST(test_errors_on_the_tilt_streams)
     of_pbf.value[MIXTURE_Q_LSB2_S3] = 700;
     of_pbf.value[MIXTURE_CLEAN_UQ16] = 32768;
     of_pbf.value[MIXTURE_RATIO_UQ8] = 10 * 256;
-    const filter_t bank = begun(&filter_law_auto, &of_auto);
-    const filter_t sprf = begun(&filter_law_sprf, &of_sprf);
-    const filter_t pbf = begun(&filter_law_pbf, &of_pbf);
+    const filter_t bank = made(&filter_law_auto, &of_auto);
+    const filter_t sprf = made(&filter_law_sprf, &of_sprf);
+    const filter_t pbf = made(&filter_law_pbf, &of_pbf);
     const tilt_guarded_t guarded = { 30.0, 8.0, 5 };
     const tilt_bayes_t bayes = { 1000.0, 0.15, 30.0 };
     static tilt_errors_t errors[5];

@@ -4,8 +4,6 @@
  */
 #include "support/test_law.h"
 
-#include <string.h>
-
 #define SEED 60006UL
 
 enum { RAMP_LSB = 3, SETTLING = 400, RAIL_LSB = 4095, CLIPPED = 1500, NO_RESTART = 60 };

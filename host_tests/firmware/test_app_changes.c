@@ -11,7 +11,6 @@
 #include "support/talk.h"
 #include "support/test.h"
 
-/* Here, because a test that fails does not reach its end. */
 /* No sensor and wrong identity by turns, ten times: each is told once until samples come again, then anew. */
 TEST(test_alternating_faults_are_told_once_each)
 {

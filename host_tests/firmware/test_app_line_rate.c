@@ -5,7 +5,6 @@
 #include "support/talk.h"
 #include "support/test.h"
 
-/* Here, because a test that fails does not reach its end. */
 /* Virtual milliseconds until the notes have become so many. */
 static void run_until_notes(size_t count)
 {

@@ -10,7 +10,6 @@
 #include "base/counters.h"
 #include "base/notices.h"
 #include "control/sensor_watch.h"
-#include "path/coast.h"
 #include "path/gravity.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"

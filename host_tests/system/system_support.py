@@ -65,11 +65,11 @@ def test(function):
 
 
 def refused(kind, function, *words):
-    """A call that must raise this kind of exception, with these words in its text."""
+    """A call that must raise this kind of exception, with these words in its text, which is one line."""
     try:
         function()
     except kind as fault:
-        assert all(word in str(fault) for word in words), fault
+        assert all(word in str(fault) for word in words) and "\n" not in str(fault), fault
     else:
         raise AssertionError(f"not refused; wanted: {words}")
 
@@ -90,7 +90,7 @@ def image_for(options, fw=FW):
 
 
 def lasts_a_minute(options):
-    """A profile slows a run down, and a long one reaches no line that the short ones leave."""
+    """A long run reaches no line that the short ones leave."""
     return "--max-ms" in options and float(options[options.index("--max-ms") + 1]) >= 60_000
 
 

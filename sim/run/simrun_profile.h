@@ -9,8 +9,8 @@ void profile_start(const char *path, const char *calls); /* either may be NULL *
 bool profile_wanted(void);
 
 /*
- * Cycles of a run from there that ends with the first instruction after which the program may go elsewhere, or before
- * one that has not run yet; no longer than about the most. 0: one instruction.
+ * Cycles of a run from there that ends with the first instruction after which the program may go elsewhere; no longer
+ * than about the most. 0: one instruction.
  */
 uint64_t profile_straight_cycles(uint32_t pc, uint64_t most);
 void profile_on_step(uint32_t pc, uint64_t cycles); /* such a run, or a shorter one */

@@ -179,6 +179,9 @@ def callers_are_the_profile_in_more_detail():
         count, cycles = by_pc.get(row["pc"], (0, 0))
         by_pc[row["pc"]] = count + int(row["count"]), cycles + int(row["cycles"])
     assert by_pc == {row["pc"]: (int(row["count"]), int(row["cycles"])) for row in csv.DictReader(flat.read_text(encoding="ascii").splitlines())}
+    alone = OUT / "flat-alone.csv"
+    run(SIMRUN, "--fw", FW, "--in", STREAMS / "rest-2lsb.csv", "--out", OUT / "x.csv", "--max-ms", "1000", "--profile", alone)
+    assert alone.read_bytes() == flat.read_bytes()  # counted by runs of straight code
     told = json.loads(stats.read_text(encoding="ascii"))
     for vector, name in ((1, "int0"), (11, "timer1_compa"), (24, "twi")):
         count, cycles = by_pc[f"0x{vector * 4:04x}"]

@@ -4,4 +4,5 @@
 #include "unity.h"
 
 #include "../../../support/random32.c"
+#include "../../../support/test.c"
 #include "../../../tilt/test_tilt.c"
