@@ -137,9 +137,9 @@ def why(answer):
         said.append(f"{answer['rows_judged']} rows are too few to distinguish filters.")
     elif answer["same_as_best"]:
         said.append(f"Within the noise of this recording it is no better than {', '.join(answer['same_as_best'])}: keep the one you know.")
-    others = [row for row in answer["filters"] if row["told_from_best"]]
+    others = [row for row in answer["filters"] if row["told_from_best"] and row["worse_percent"] > 0.0]
     if others:
-        listed = ", ".join(f"{row['filter']} {much(row)}" for row in others if row["worse_percent"] > 0.0)
+        listed = ", ".join(f"{row['filter']} {much(row)}" for row in others)
         said.append(f"Certainly worse: {listed}.")
     return said + reasons(answer, rows, best) + [price(best)]
 
