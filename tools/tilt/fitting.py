@@ -49,8 +49,8 @@ def samples_of(stream, rate_dhz):
     rate_hz, state = rate_dhz / 10, judge.states(rows)
     there = state == native.THERE
     references = [smoother.smoothed(rows["lsb"], there, rate_hz, cuts) for cuts in (smoother.CUTS_HZ, smoother.CUTS_HZ[:1])]
-    use = there.all(axis=1) & smoother.fair(rows["t_us"], rate_hz)
-    return Samples(rows["lsb"], state, references, use, rest.find(rows["lsb"], there.all(axis=1), rate_hz), rate_dhz)
+    use = smoother.complete(there) & smoother.fair(rows["t_us"], rate_hz)
+    return Samples(rows["lsb"], state, references, use, rest.find(rows["lsb"], smoother.complete(there), rate_hz), rate_dhz)
 
 
 def run(samples, name, values):
@@ -64,8 +64,8 @@ def losses(samples, name, values):
         axes = run(samples, name, values)
     except TiltError:
         return np.full((len(samples.references), PARTS), np.inf)
-    shown = np.stack([probes["x_lsb_q16"] / 65536.0 for probes in axes], axis=1)
-    each = [np.where(samples.use, np.mean((shown - reference) ** 2, axis=1), 0.0) for reference in samples.references]
+    shown, known = np.stack([probes["x_lsb_q16"] / 65536.0 for probes in axes], axis=1), smoother.known(samples.state == native.THERE)
+    each = [np.where(samples.use, np.mean((shown - reference)[:, known] ** 2, axis=1), 0.0) for reference in samples.references]
     return np.array([[part.sum() for part in np.array_split(one, PARTS)] for one in each]) / max(np.count_nonzero(samples.use), 1)
 
 

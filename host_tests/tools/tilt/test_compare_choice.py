@@ -4,9 +4,11 @@ intervals, and the price. Run from the repository root with build/venv/bin/pytho
 import contextlib
 import dataclasses
 import io
+import json
 import pathlib
 import re
 import sys
+import tempfile
 import unittest
 from unittest import mock
 
@@ -15,7 +17,7 @@ import numpy as np
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
-from tilt import cli, judge, native, smoother, stream  # noqa: E402
+from tilt import cli, fitting, judge, native, smoother, stream  # noqa: E402
 from tilt.commands import compare  # noqa: E402
 
 STREAMS = pathlib.Path("sim/streams")
@@ -71,6 +73,21 @@ class Smoother(unittest.TestCase):
         there[500:505], lsb[500:505] = False, -4096
         # white noise of 2 LSB through 1.25 Hz both ways: 2 sqrt(1.25 x 2 / 100), some of the motion, and more for the share left out
         self.assertLess(np.sqrt(np.mean((smoother.smoothed(lsb, there, 100.0) - truth)[100:-100] ** 2)), 0.5)
+
+    def test_an_axis_without_a_reading_is_left_out_and_the_others_are_judged_as_without_it(self):
+        lsb = np.round(np.random.default_rng(4).normal([0, 30, 256], 2, (3000, 3)))
+        lsb[:, 1] += np.round(100 * np.sin(np.arange(3000) / 50))
+        there = np.ones(lsb.shape, bool)
+        whole = smoother.smoothed(lsb, there, 100.0, smoother.CUTS_HZ[:1])
+        there[:, 0], lsb[:, 0] = False, 4095
+        np.testing.assert_array_equal(smoother.smoothed(lsb, there, 100.0, smoother.CUTS_HZ[:1])[:, 1:], whole[:, 1:])
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "clipped.csv"
+            stream.write(path, np.arange(3000) * 10000, lsb)
+            status, out, err = run(path, "--filter", f"{DEFAULT},{PLAIN}", "--json")
+            self.assertEqual((status, err), (0, ""))
+            self.assertTrue(all(0.2 < row["error_lsb"] < 20.0 for row in json.loads(out)["filters"]), out)
+            self.assertGreater(fitting.samples_of(stream.read(path), 1000).motion_s, fitting.MOTION_MIN_S)
 
     def test_no_row_near_a_gap_is_judged(self):
         t_us = np.concatenate([np.arange(300), np.arange(400, 700)]) * 10000

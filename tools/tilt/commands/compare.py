@@ -36,13 +36,13 @@ def rows_of(tables):
 def facts_of(stream, tables, rate_dhz):
     """Properties of the recording itself: {outliers_percent, rest_seconds, still_share}, and the stretches at rest."""
     import numpy as np
-    from tilt import judge, rest
+    from tilt import judge, rest, smoother
 
     rows, state = rows_of(tables)
-    found = rest.find(rows["lsb"], (state == 1).all(axis=1), rate_dhz / 10)
+    found = rest.find(rows["lsb"], smoother.complete(state == 1), rate_dhz / 10)
     probes = judge.probes_of(ROBUST, rate_dhz, rows, state)
     use = judge.judged([probes])
-    far = [judge.innovations(axis)[use] ** 2 > judge.CUT ** 2 * judge.variance_of(axis)[use] / judge.BOARD_FACTOR for axis in probes]
+    far = [judge.innovations(axis)[use] ** 2 > judge.CUT ** 2 * judge.variance_of(axis)[use] / judge.BOARD_FACTOR for axis in probes.values()]
     outliers = 100.0 * float(np.mean(far)) if np.any(use) else 0.0
     facts = {"outliers_percent": outliers, "rest_seconds": found.seconds, "still_share": found.seconds / max(stream.seconds, 1e-9)}
     return facts, found
