@@ -1,9 +1,7 @@
 #!/usr/bin/env python3
 """What `tilt compare` recommends and what it says of it: the choice without truth against the one with it, filters that are published only,
 intervals, and the price. Run from the repository root with build/venv/bin/python."""
-import contextlib
 import dataclasses
-import io
 import json
 import pathlib
 import re
@@ -17,7 +15,8 @@ import numpy as np
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
-from tilt import cli, fitting, judge, native, smoother, stream  # noqa: E402
+from tilt_case import run_tilt  # noqa: E402
+from tilt import fitting, judge, native, smoother, stream  # noqa: E402
 from tilt.commands import compare  # noqa: E402
 
 STREAMS = pathlib.Path("sim/streams")
@@ -27,10 +26,7 @@ JUMPS = ("steps", "steps-outliers")  # a low pass rounds them
 
 
 def run(*words):
-    out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        status = cli.main(["compare", *map(str, words)])
-    return status, out.getvalue(), err.getvalue()
+    return run_tilt("compare", *words)
 
 
 def both(stem):
