@@ -19,7 +19,7 @@ ANSWER_S = 5.0
 
 
 def arguments(parser):
-    parser.add_argument("stream", metavar="STREAM", help="recording (docs/protocol.md, Streams): the motion you mean, 15 s of it and more")
+    parser.add_argument("stream", metavar="STREAM", help="recording (docs/protocol.md, Streams): the motion you mean, 15 s of it or more")
     parser.add_argument("--filter", metavar="NAME", help="which filter (default: the one that the firmware starts with)")
     parser.add_argument("--rate", metavar="HZ", type=real_option, help="output data rate of the board (default: nearest to the recording's)")
     parser.add_argument("--apply", metavar="PORT", help="type the commands into the board at this port")
