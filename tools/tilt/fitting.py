@@ -1,7 +1,8 @@
 """Fits a filter's parameters to a recording: the least distance from the recording smoothed without lag (tilt.smoother), as the shipped code runs it.
 
 Each parameter in turn is tried at values around the best so far, in steps of its own scale. The time is cut into parts: what the best of all but
-one part earns on that one is what the fit is worth. Where that is little, or where a part loses, the defaults stay.
+one part earns on that one is what the fit is worth. Where that is little, or where a part loses, the defaults stay. All that is tried comes from
+one search over the whole recording.
 """
 from __future__ import annotations
 
@@ -27,8 +28,8 @@ MOTION_MIN_S = 15.0
 
 @dataclass
 class Samples:
-    """A recording on an even grid: readings (n, 3), states (n, 3) as native.axis takes them, its smoothed forms, samples that may be judged, its
-    rest, the rate."""
+    """A recording as rows of the sample path, few in a silence: readings (n, 3), states (n, 3) as native.axis takes them, its smoothed forms,
+    samples that may be judged, its rest, the rate."""
     lsb: np.ndarray
     state: np.ndarray
     references: list
