@@ -10,7 +10,8 @@ G = 9.80665
 # x, y within +-20 and +-30, z about 1 g: each row differs from its neighbours, values even and odd
 LSB = [((i * 37) % 41 - 20, (i * 53) % 61 - 30, 240 + (i * 29) % 37) for i in range(ROWS)]
 HEADER = "t_us,x,y,z"
-REMEDY = r"(if these are accelerations, )?(correct|delete|give|split|record|export|save|unpack|choose|name|write|print|count from|import|each \w+ needs) "
+REMEDY = (r"(if these are accelerations, )?"
+          r"(correct|delete|give|split|record|export|save|unpack|choose|name|write|print|count from|import|each \w+ needs) ")
 
 
 def every(period_us, rows=ROWS):

@@ -82,7 +82,7 @@ class Fits(Case):
             self.assertLess(answer["held_back"], 1.0)
 
     def test_with_outliers_and_a_gap_the_error_from_the_truth_falls_too(self):
-        """Of each axis 5 % lie 300 LSB off, 3 s are missing. Neither they nor the rows after them are judged, and quick motion asks for a shorter memory."""
+        """Of each axis 5 % lie 300 LSB off, 3 s are missing. Neither they nor the rows after them are judged."""
         rng = np.random.default_rng(6)
         lsb, truth = turned(rng, *QUICK)
         lsb += 300 * (rng.random(lsb.shape) < 0.05)

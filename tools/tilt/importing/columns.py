@@ -138,7 +138,8 @@ def of_option(text, cells, path):
         elif word.lower() in words:
             found.append(words.index(word.lower()))
         else:
-            raise TiltError(f"{path}: --columns: no column '{word}': " + (f"choose from {', '.join(words)}" if words else "give numbers, there is no header"))
+            remedy = f"choose from {', '.join(words)}" if words else "give numbers, there is no header"
+            raise TiltError(f"{path}: --columns: no column '{word}': {remedy}")
     if len(wanted) == 3:
         return Columns(tuple(found))
     named = names[found[0]] if found[0] < len(names) else ("", None)
