@@ -1,7 +1,8 @@
 """Fits a filter's parameters to a recording: the least distance from the recording smoothed without lag (tilt.smoother), as the shipped code runs it.
 
 Each parameter in turn is tried at values around the best so far, in steps of its own scale. The time is cut into parts: what the best of all but
-one part earns on that one is what the fit is worth. Where that is little, or where a part loses, the defaults stay.
+one part earns on that one is what the fit is worth. Where that is little, or where a part loses, the defaults stay. All that is tried comes from
+one search over the whole recording.
 """
 from __future__ import annotations
 
@@ -27,8 +28,8 @@ MOTION_MIN_S = 15.0
 
 @dataclass
 class Samples:
-    """A recording on an even grid: readings (n, 3), states (n, 3) as native.axis takes them, its smoothed forms, samples that may be judged, its
-    rest, the rate."""
+    """A recording as rows of the sample path, few in a silence: readings (n, 3), states (n, 3) as native.axis takes them, its smoothed forms,
+    samples that may be judged, its rest, the rate."""
     lsb: np.ndarray
     state: np.ndarray
     references: list
@@ -49,8 +50,8 @@ def samples_of(stream, rate_dhz):
     rate_hz, state = rate_dhz / 10, judge.states(rows)
     there = state == native.THERE
     references = [smoother.smoothed(rows["lsb"], there, rate_hz, cuts) for cuts in (smoother.CUTS_HZ, smoother.CUTS_HZ[:1])]
-    use = there.all(axis=1) & smoother.fair(rows["t_us"], rate_hz)
-    return Samples(rows["lsb"], state, references, use, rest.find(rows["lsb"], there.all(axis=1), rate_hz), rate_dhz)
+    use = smoother.complete(there) & smoother.fair(rows["t_us"], rate_hz)
+    return Samples(rows["lsb"], state, references, use, rest.find(rows["lsb"], smoother.complete(there), rate_hz), rate_dhz)
 
 
 def run(samples, name, values):
@@ -64,8 +65,8 @@ def losses(samples, name, values):
         axes = run(samples, name, values)
     except TiltError:
         return np.full((len(samples.references), PARTS), np.inf)
-    shown = np.stack([probes["x_lsb_q16"] / 65536.0 for probes in axes], axis=1)
-    each = [np.where(samples.use, np.mean((shown - reference) ** 2, axis=1), 0.0) for reference in samples.references]
+    shown, known = np.stack([probes["x_lsb_q16"] / 65536.0 for probes in axes], axis=1), smoother.known(samples.state == native.THERE)
+    each = [np.where(samples.use, np.mean((shown - reference)[:, known] ** 2, axis=1), 0.0) for reference in samples.references]
     return np.array([[part.sum() for part in np.array_split(one, PARTS)] for one in each]) / max(np.count_nonzero(samples.use), 1)
 
 

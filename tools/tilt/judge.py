@@ -3,14 +3,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tilt import native
+from tilt import native, smoother
 from tilt.angles import LSB_PER_G, angle_deg, direction, wrapped_deg
 
 COASTED, CLIPPED, FAULT, WARMING, ROLL_UNDEFINED = 2, 8, 16, 128, 1024
 BATCHES, BATCHES_MOST, BATCH_MIN, BATCH_S = 20, 200, 10, 0.5  # half a second: the memory of most filters
 NOISE_T = 3.5               # Student's t with 14 degrees of freedom: 5 % two-sided, shared by the twelve comparisons with the best
 INTERVAL_T = 2.14           # and 5 % for one
-CUT = 4.0                   # sigmas: limit of an innovation, so that outliers weigh the same for all filters
+CUT = 4.0                   # sigmas of an innovation, above which compare counts an outlier
 BOARD_FACTOR = 1.5          # the board's R over the variance (noise.h)
 MOVES_DEG_S = 0.5           # least rms rate of the truth at which a lag can be measured
 LAG_KNOWN_MS = 2.0
@@ -104,9 +104,9 @@ def states(rows):
     return found
 
 
-def probes_of(name, rate_dhz, rows, state, **options):
-    """One table of probes per axis, as the board runs the filter."""
-    return [native.axis(name, rate_dhz, rows["lsb"][:, i], state[:, i], noisy_axis=i == 2, **options) for i in range(3)]
+def probes_of(name, rate_dhz, rows, state):
+    """{axis: probes} of each axis with a reading, as the board runs the filter."""
+    return {i: native.axis(name, rate_dhz, rows["lsb"][:, i], state[:, i], noisy_axis=i == 2) for i in smoother.known(state == native.THERE)}
 
 
 def variance_of(probes):
@@ -122,18 +122,18 @@ def innovations(probes):
 
 
 def against_smoothed(t_us, axes, reference, use):
-    """(numbers, loss per row) of one filter over the rows in use. axes: its probes; reference: smoother.smoothed."""
-    errors = np.stack([probes["x_lsb_q16"][use] / 65536.0 - reference[use, axis] for axis, probes in enumerate(axes)], axis=1)
+    """(numbers, loss per row) of one filter over the rows in use. axes: {axis: its probes}; reference: smoother.smoothed."""
+    errors = np.stack([probes["x_lsb_q16"][use] / 65536.0 - reference[use, axis] for axis, probes in axes.items()], axis=1)
     loss = np.mean(errors ** 2, axis=1)
-    turned = [np.degrees(part.T / LSB_PER_G[:, None]) for part in (errors, reference[use])]
-    ratios = [float(np.median(innovations(probes)[use] ** 2 / variance_of(probes)[use])) / CHI2_MEDIAN for probes in axes]
+    turned = [np.degrees(part.T / LSB_PER_G[list(axes), None]) for part in (errors, reference[use][:, list(axes)])]
+    ratios = [float(np.median(innovations(probes)[use] ** 2 / variance_of(probes)[use])) / CHI2_MEDIAN for probes in axes.values()]
     return {"error_lsb": float(np.sqrt(loss.mean())) if len(loss) else float("nan"), "nis": float(np.mean(ratios)),
             "lag_ms": lag_ms(t_us[use], *turned)}, loss
 
 
 def judged(tables_of_probes):
     """Rows for which every filter predicted a sample on every axis."""
-    return np.all([probes["judged"] == 1 for axes in tables_of_probes for probes in axes], axis=0)
+    return np.all([probes["judged"] == 1 for axes in tables_of_probes for probes in axes.values()], axis=0)
 
 
 def wander_deg(rows, stretches):

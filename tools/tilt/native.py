@@ -15,6 +15,7 @@ from tilt.errors import TiltError
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIBRARY = pathlib.Path("build/host/libtilt.so")
 SOURCES = ("firmware/*/*.[ch]", "lib/*/src/*.[ch]", "hal/*.h", "hal/host/*.[ch]", "sim/*/*.[ch]", "host_tests/tools/libtilt/*.[ch]",
+           "host_tests/support/*.[ch]",
            "Makefile", "tools/tilt/tilt.mk")
 RATES_DHZ = tuple(125 << power for power in range(7))  # of the firmware
 FORK_FROM_ROWS = 20_000  # a second process takes 20 ms to start and end
@@ -91,6 +92,7 @@ def library(root=ROOT):
     except OSError as error:
         raise TiltError(f"{root / LIBRARY}: cannot load it: {error}") from error
     loaded.libtilt_filter_name.restype = ctypes.c_char_p
+    loaded.libtilt_filter_published_only.restype = ctypes.c_bool
     loaded.libtilt_parameter.restype = ctypes.c_bool
     loaded.libtilt_parameter.argtypes = [ctypes.c_int, ctypes.c_int, ctypes.c_uint16, ctypes.c_void_p]
     loaded.libtilt_row_per_tick.argtypes = [ctypes.c_void_p, ctypes.c_uint16]
@@ -226,9 +228,8 @@ def _in_child(work):
 
 
 def published_only():
-    """Names of the filters that are there to compare with the papers; no tool recommends one (host_tests/support/law_NAME.c)."""
-    facts = ROOT.glob("host_tests/support/law_*.c")
-    return {path.stem.removeprefix("law_") for path in facts if ".published_only = true" in path.read_text(encoding="utf-8")}
+    """Names of the filters that are there to compare with the papers; no tool recommends one."""
+    return {name for kind, name in enumerate(filters()) if library().libtilt_filter_published_only(kind)}
 
 
 def cycles(name):

@@ -2,6 +2,8 @@
 import re
 from typing import NamedTuple
 
+from tilt.errors import TiltError
+
 HEADER = "t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags"
 BAUDS = (9600, 19200, 38400, 57600, 115200, 250000, 500000, 1000000)
 BAUD_AT_START = 115200
@@ -23,6 +25,12 @@ NEEDED = ("t_us", "x_lsb", "y_lsb", "z_lsb")
 BANNER, RESET = "# tilt-uno ", "# reset: "  # one after the other at a start
 PLOTTER_ROW = re.compile(r"roll_raw:-?\d+\.\d+,roll:")
 NUMBER = re.compile(r"-?\d{1,10}\Z")
+
+
+def check_baud(baud):
+    """TiltError if the firmware has no such rate."""
+    if baud not in BAUDS:
+        raise TiltError(f"--baud {baud}: choose from {', '.join(map(str, BAUDS))}")
 
 
 REFUSED = "# refused"

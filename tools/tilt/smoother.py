@@ -45,11 +45,24 @@ def missed(readings, kept, cut_hz, rate_hz):
 
 
 def smoothed(lsb, there, rate_hz, cuts_hz=CUTS_HZ):
-    """The reference in LSB, (rows, 3), at the best of these cuts. there: per row and axis, whether a reading is one."""
-    axes = [(lsb[:, axis].astype(float), inliers(lsb[:, axis].astype(float), there[:, axis], rate_hz)) for axis in range(3) if there[:, axis].any()]
-    cut_hz = min(cuts_hz, key=lambda cut: sum(missed(*axis, cut, rate_hz) for axis in axes))
-    found = [low_pass(*axis, cut_hz, rate_hz) for axis in axes]
-    return np.column_stack(found) if len(found) == 3 else lsb.astype(float)
+    """The reference in LSB, (rows, 3), at the best of these cuts; an axis without a reading stays as it is. there: per row and axis, whether a
+    reading is one."""
+    reference = lsb.astype(float)
+    kept = {axis: inliers(reference[:, axis], there[:, axis], rate_hz) for axis in known(there) if there[:, axis].any()}
+    cut_hz = min(cuts_hz, key=lambda cut: sum(missed(reference[:, axis], good, cut, rate_hz) for axis, good in kept.items()))
+    for axis, good in kept.items():
+        reference[:, axis] = low_pass(reference[:, axis], good, cut_hz, rate_hz)
+    return reference
+
+
+def known(there):
+    """The axes with a reading, which alone may be judged; all if there is none."""
+    return np.flatnonzero(there.any(axis=0) | (not there.any()))
+
+
+def complete(there):
+    """Rows with a reading on each of them."""
+    return there[:, known(there)].all(axis=1)
 
 
 def fair(t_us, rate_hz):

@@ -258,7 +258,7 @@ def _careful(path, data, extra, progress):
     pieces = (data[:-1] if data.endswith(b"\n") else data).split(b"\n")
     for number, raw in enumerate(pieces, 1):
         if b"\0" in raw:
-            raise at(path, number, "a NUL byte: tilt import FILE reads UTF-16")
+            raise at(path, number, "a NUL byte: no text, or UTF-16, which tilt import FILE converts")
         text = raw.strip(BLANKS)
         if not text or text.startswith(b"#"):
             continue

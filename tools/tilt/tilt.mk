@@ -16,7 +16,7 @@ pictures: $(U)/firmware.elf $(S)/simrun
 
 # the sample path and all filters for `tilt replay`, `compare` and `tune`, which build it if it is missing or older than its sources; a new
 # compiler's warnings must not break it: check-compile judges warnings
-LIBTILT_SRC := $(wildcard host_tests/tools/libtilt/*.c) $(HOST_SRC)
-$(H)/libtilt.so: $(LIBTILT_SRC) $(wildcard host_tests/tools/libtilt/*.h */*.h lib/*/src/*.h hal/*/*.h) Makefile tools/tilt/tilt.mk
+LIBTILT_SRC := $(wildcard host_tests/tools/libtilt/*.c) $(HOST_SRC) $(LAW_SUPPORT)
+$(H)/libtilt.so: $(LIBTILT_SRC) $(wildcard host_tests/tools/libtilt/*.h host_tests/support/*.h */*.h lib/*/src/*.h hal/*/*.h) Makefile tools/tilt/tilt.mk
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(filter-out -O1 -g,$(HOST_FLAGS)) -O2 -flto=auto -fPIC -shared -fvisibility=hidden $(filter-out -Werror,$(WARNINGS)) $(LIBTILT_SRC) -lm -o $@

@@ -6,6 +6,7 @@
 
 #include "filter_list.h"
 #include "noise.h"
+#include "support/filters.h"
 
 enum { MISSING = 0, AT_RAIL = 2, HOLD_PER_S = 10 };
 
@@ -22,6 +23,11 @@ const char *libtilt_filter_name(int kind)
 int libtilt_filter_cycles(int kind)
 {
     return filter_worst_cycles(filter_listed((filter_kind_t)kind));
+}
+
+bool libtilt_filter_published_only(int kind)
+{
+    return law_facts((filter_kind_t)kind).published_only;
 }
 
 bool libtilt_parameter(int kind, int index, uint16_t rate_dhz, libtilt_parameter_t *out)

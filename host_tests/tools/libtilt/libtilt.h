@@ -57,7 +57,8 @@ typedef struct {
 /* Kinds are 0 .. libtilt_filters() - 1, in the order of filter_list.h. */
 int libtilt_filters(void);
 const char *libtilt_filter_name(int kind);
-int libtilt_filter_cycles(int kind); /* worst case on the chip */
+int libtilt_filter_cycles(int kind);          /* worst case on the chip */
+bool libtilt_filter_published_only(int kind); /* to compare with its paper: no tool recommends it */
 
 /* False: the filter has no parameter with this number. */
 bool libtilt_parameter(int kind, int index, uint16_t rate_dhz, libtilt_parameter_t *out);

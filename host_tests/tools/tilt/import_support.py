@@ -10,7 +10,8 @@ G = 9.80665
 # x, y within +-20 and +-30, z about 1 g: each row differs from its neighbours, values even and odd
 LSB = [((i * 37) % 41 - 20, (i * 53) % 61 - 30, 240 + (i * 29) % 37) for i in range(ROWS)]
 HEADER = "t_us,x,y,z"
-REMEDY = r"(correct|delete|give|split|record|export|save|unpack|choose|name|write|print|needs|count from|import|among) "
+REMEDY = (r"(if these are accelerations, )?"
+          r"(correct|delete|give|split|record|export|save|unpack|choose|name|write|print|count from|import|each \w+ needs) ")
 
 
 def every(period_us, rows=ROWS):
@@ -54,12 +55,15 @@ class Case(InFolder):
         return said
 
     def refused(self, content, reason, *words, name="in.txt", line=None):
-        """The import ends with status 2 and exactly this reason, with a remedy after it or in it, and nothing is written."""
+        """The import ends with status 2, exactly this reason, and a colon and a remedy: after the reason, or spelled out at its end. Nothing is
+        written."""
         path = self.file(content, name)
         self.out.unlink(missing_ok=True)
         status, said = self.run_tilt(path, "-o", self.out, *words)
         where = f"{path}:{line}: " if line else f"{path}: "
         self.assertEqual(status, 2, said)
-        self.assertRegex(said, re.escape(f"tilt import: {where}{reason}") + r"(: [^:\n]*)?\n\Z")
-        self.assertRegex(said.removeprefix(f"tilt import: {where}"), REMEDY)
+        begins = f"tilt import: {where}{reason}"
+        self.assertTrue(said.startswith(begins), said)
+        remedy = said.removeprefix(begins)
+        self.assertRegex(remedy if remedy != "\n" else re.search(r": [^:]*\Z", reason + remedy)[0], rf"\A: {REMEDY}[^:\n]*\n\Z")
         self.assertEqual(sorted(found.name for found in self.folder.iterdir()), [name])

@@ -1,18 +1,14 @@
 #!/usr/bin/env python3
 """A corpus of bad inputs to every command: each ends with status 2 and one line that names a remedy, never with a traceback, and leaves no file.
 Run from the repository root with build/venv/bin/python."""
-import contextlib
 import gzip
-import io
 import pathlib
 import sys
-import tempfile
-import unittest
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import PLAIN, ROBUST  # noqa: E402
-from tilt import cli  # noqa: E402
+from tilt_case import InFolder, run_tilt  # noqa: E402
 
 ROWS = "".join(f"{10000 * i},{i % 3},{-i % 5},{256 + i % 2}\n" for i in range(40))
 STREAM, HEADER = "t_us,x,y,z\n" + ROWS, "t_us,x,y,z\n"
@@ -36,7 +32,7 @@ IMPORTS = (
     ("t_ms,x,y,z\n0,1,2,250\n10,1,2,250\n15,1,2\n20,1,2,250\n", "", MEND), ("t_ms,x,y,z\n20,1,2,250\n10,1,2,250\n", "", "split the file"),
     ("t_ms,x,y,z\n0,1,2,250\n10,1,2,9999\n", "", MEND), ("t_ms,temp,hum,p\n0,1,2,250\n10,1,2,9\n", "", "--columns"),
     ("freq,psd_x,psd_y,psd_z\n1,2,3,4\n", "", "import the raw data"), ("a,b,c\n1,2,250\n", "--columns 1,2", "give three"),
-    ("a,b,c\n1,2,250\n", "--columns a,b,q", "among"), ("a,b,c\n1,2,250\n", "--columns 1,2,9", "count from 1"),
+    ("a,b,c\n1,2,250\n", "--columns a,b,q", "choose from"), ("a,b,c\n1,2,250\n", "--columns 1,2,9", "count from 1"),
     ("t_ms,x,y,z\n" + "".join(f"{10 * i},{0.123 + i / 7},{i / 3},250.4\n" for i in range(40)), "", "--unit N"),
     ("x,y,z\n1,2,250\n", "--unit furlong", "give one of"), ("x,y,z\n1,2,250\n", "--rate fast", SEE), ("x,y,z\n1,2,250\n", "--sensor 0", SEE),
     ("x,y,z\n1,2,250\n", "--rate 10 --sensor 2", "count from 1"), ('{"a": 1, "b": 2}\n', "", "--columns"), ('{"x": 1, "y": 2}\n', "", "--columns"),
@@ -59,32 +55,25 @@ LINES = (
     ("live FILE", "give one, such as"))
 
 
-class Case(unittest.TestCase):
+class Case(InFolder):
     def setUp(self):
-        place = tempfile.TemporaryDirectory()
-        self.addCleanup(place.cleanup)
-        self.place = pathlib.Path(place.name)
-        self.file = self.place / "given.csv"
+        super().setUp()
+        self.file = self.folder / "given.csv"
 
     def refused(self, line, content, remedy):
         self.file.write_bytes(content if isinstance(content, bytes) else content.encode())
-        names = {"FILE": str(self.file), "DIR": str(self.place), "no": str(self.place / "no"), "OUT": str(self.place / "out"),
-                 "missing": str(self.place / "missing")}
+        names = {"FILE": str(self.file), "DIR": str(self.folder), "no": str(self.folder / "no"), "OUT": str(self.folder / "out"),
+                 "missing": str(self.folder / "missing")}
         words = []
         for word in line.split():
             first = next((name for name in names if word == name or word.startswith((f"{name}.", f"{name}/"))), None)
             words.append(names[first] + word.removeprefix(first) if first else word)
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            try:
-                status = cli.main(words)
-            except SystemExit as stop:
-                status = stop.code
+        status, out, err = run_tilt(*words)
         with self.subTest(line, content=content[:40]):
-            self.assertEqual((status, out.getvalue()), (2, ""), err.getvalue())
-            self.assertRegex(err.getvalue(), r"\Atilt[^\n]*: [^\n]+\n\Z")
-            self.assertIn(remedy, err.getvalue())
-            self.assertEqual([path.name for path in self.place.iterdir()], [self.file.name])
+            self.assertEqual((status, out), (2, ""), err)
+            self.assertRegex(err, r"\Atilt[^\n]*: [^\n]+\n\Z")
+            self.assertIn(remedy, err)
+            self.assertEqual([path.name for path in self.folder.iterdir()], [self.file.name])
 
 
 class Corpus(Case):

@@ -1,20 +1,22 @@
 #!/usr/bin/env python3
 """What `tilt compare` recommends and what it says of it: the choice without truth against the one with it, filters that are published only,
 intervals, and the price. Run from the repository root with build/venv/bin/python."""
-import contextlib
 import dataclasses
-import io
+import json
 import pathlib
 import re
 import sys
+import tempfile
 import unittest
+from unittest import mock
 
 import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
-from tilt import cli, judge, native, smoother, stream  # noqa: E402
+from tilt_case import run_tilt  # noqa: E402
+from tilt import fitting, judge, native, smoother, stream  # noqa: E402
 from tilt.commands import compare  # noqa: E402
 
 STREAMS = pathlib.Path("sim/streams")
@@ -24,10 +26,7 @@ JUMPS = ("steps", "steps-outliers")  # a low pass rounds them
 
 
 def run(*words):
-    out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        status = cli.main(["compare", *map(str, words)])
-    return status, out.getvalue(), err.getvalue()
+    return run_tilt("compare", *words)
 
 
 def both(stem):
@@ -50,7 +49,8 @@ class Choice(unittest.TestCase):
 
     def test_published_filters_are_those_that_the_page_gives_to_compare(self):
         row = re.search(r"^\| the papers' filters, to compare \|(.*)\|$", pathlib.Path("docs/choosing-a-filter.md").read_text(encoding="utf-8"), re.M)
-        self.assertEqual(native.published_only(), set(re.findall(r"`(\w+)`", row[1])))
+        with mock.patch.object(native, "ROOT", pathlib.Path("no/checkout")):  # the library knows them, no source is read
+            self.assertEqual(native.published_only(), set(re.findall(r"`(\w+)`", row[1])))
 
     def test_a_published_filter_is_shown_and_never_recommended(self):
         published = ",".join(sorted(native.published_only()))
@@ -70,6 +70,21 @@ class Smoother(unittest.TestCase):
         # white noise of 2 LSB through 1.25 Hz both ways: 2 sqrt(1.25 x 2 / 100), some of the motion, and more for the share left out
         self.assertLess(np.sqrt(np.mean((smoother.smoothed(lsb, there, 100.0) - truth)[100:-100] ** 2)), 0.5)
 
+    def test_an_axis_without_a_reading_is_left_out_and_the_others_are_judged_as_without_it(self):
+        lsb = np.round(np.random.default_rng(4).normal([0, 30, 256], 2, (3000, 3)))
+        lsb[:, 1] += np.round(100 * np.sin(np.arange(3000) / 50))
+        there = np.ones(lsb.shape, bool)
+        whole = smoother.smoothed(lsb, there, 100.0, smoother.CUTS_HZ[:1])
+        there[:, 0], lsb[:, 0] = False, 4095
+        np.testing.assert_array_equal(smoother.smoothed(lsb, there, 100.0, smoother.CUTS_HZ[:1])[:, 1:], whole[:, 1:])
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "clipped.csv"
+            stream.write(path, np.arange(3000) * 10000, lsb)
+            status, out, err = run(path, "--filter", f"{DEFAULT},{PLAIN}", "--json")
+            self.assertEqual((status, err), (0, ""))
+            self.assertTrue(all(0.2 < row["error_lsb"] < 20.0 for row in json.loads(out)["filters"]), out)
+            self.assertGreater(fitting.samples_of(stream.read(path), 1000).motion_s, fitting.MOTION_MIN_S)
+
     def test_no_row_near_a_gap_is_judged(self):
         t_us = np.concatenate([np.arange(300), np.arange(400, 700)]) * 10000
         self.assertEqual(np.flatnonzero(~smoother.fair(t_us, 100.0)).tolist(), [*range(100), *range(279, 321)])
@@ -77,6 +92,15 @@ class Smoother(unittest.TestCase):
 
 
 class Words(unittest.TestCase):
+    def test_nothing_is_called_worse_where_only_a_published_filter_differs_and_is_better(self):
+        row = {"tilt_rms_deg": 1.0, "lag_ms": None, "wander_deg": None, "cycles": 900, "gated_percent": 0.0}
+        rows = [row | {"filter": "paper", "worse_percent": -20.0, "published_only": True, "told_from_best": True},
+                row | {"filter": PLAIN, "worse_percent": 0.0, "published_only": False, "told_from_best": False}]
+        answer = {"filters": rows, "best": PLAIN, "enough": True, "same_as_best": [], "outliers_percent": 0.0, "still_share": 0.0}
+        self.assertNotIn("worse", " ".join(compare.why(answer)))
+        rows[0]["worse_percent"] = 20.0
+        self.assertIn("Certainly worse: paper +20.0 %.", compare.why(answer))
+
     def test_nothing_lags_by_minus_zero_or_is_worse_by_thousands_of_percent(self):
         for stem in ("tilt-fast", "outliers-15pct"):
             out = run(STREAMS / f"{stem}.csv")[1]

@@ -59,7 +59,7 @@ def errors_lsb(tables, clean, rate_dhz):
     late = (np.arange(len(rows)) >= rate_hz) & (rows["source"] >= 0)
 
     def error(name):
-        shown = np.column_stack([axis["x_lsb_q16"] / 65536.0 for axis in judge.probes_of(name, rate_dhz, rows, state)])
+        shown = np.column_stack([axis["x_lsb_q16"] / 65536.0 for axis in judge.probes_of(name, rate_dhz, rows, state).values()])
         return float(np.sqrt(np.mean((shown - reference)[late] ** 2)))
     return {name: error(name) for name in tables}
 

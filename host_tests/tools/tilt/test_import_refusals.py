@@ -159,7 +159,8 @@ class Json(Case):
 
 class Options(Case):
     def test_options_that_cannot_be(self):
-        self.refused(TABLE, "--columns: no column 'u' among t_ms, x, y, z", "--columns", "t_ms,u,y,z")
+        self.refused(TABLE, "--columns: no column 'u': choose from t_ms, x, y, z", "--columns", "t_ms,u,y,z")
+        self.refused("1,2,250\n" * 9, "--columns: no column 'u': give numbers, there is no header", "--columns", "u,y,z")
         self.refused(TABLE, "column 9 requested, but rows have 4", "--columns", "1,2,3,9")
         for words, reason in ((("--columns", "1,2"), "--columns 1,2: give three (x,y,z) or four (time,x,y,z) names or numbers"),
                               (("--unit", "furlong"), "--unit furlong: give one of raw, g, mg, m/s2, mm/s2, k/265, or the value of one LSB: "

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What common sketches print, made here from known integers: every kind of row, of stamp, of line end and of encoding gives these integers
 and times. Run from the repository root with build/venv/bin/python."""
+import itertools
 import pathlib
 import sys
 from datetime import datetime, timedelta
@@ -77,6 +78,7 @@ TIMED = {  # (header, the stamp of a time and its ms, rows)
     "PlatformIO": ("", lambda t, ms: f"{clock(t)} > ", COMMAS),
     "in brackets": ("", lambda t, ms: f"[{clock(t)}] ", COMMAS),
     "in brackets with its day": ("", lambda t, ms: f"[{t:%Y-%m-%d} {clock(t)}] ", COMMAS),
+    "with an arrow and its day": ("", lambda t, ms: f"{t:%Y-%m-%d} {clock(t)} -> ", LABELS),
     "CoolTerm": ("", lambda t, ms: f"{t:%Y-%m-%d} {clock(t)} ", LABELS),
     "CoolTerm, tabs": ("", lambda t, ms: f"{t:%Y-%m-%d} {clock(t)}\t", TABS),
     "ISO": ("time,x,y,z\n", lambda t, ms: f"{t:%Y-%m-%d}T{clock(t)}Z,", COMMAS),
@@ -85,6 +87,8 @@ TIMED = {  # (header, the stamp of a time and its ms, rows)
     "clock and commas": ("", lambda t, ms: f"{clock(t)},", COMMAS),
     "European": ("time;x;y;z\n", lambda t, ms: f"{t:%d.%m.%Y} {clock(t)};", SEMICOLONS),
     "American": ("time,x,y,z\n", lambda t, ms: f"{t:%m/%d/%Y} {clock(t)},", COMMAS),
+    "British": ("time,x,y,z\n", lambda t, ms: f"{t:%d/%m/%Y} {clock(t)},", COMMAS),
+    "European day and clock": ("Date;Time;X;Y;Z\n", lambda t, ms: f"{t:%d.%m.%Y};{clock(t)};", SEMICOLONS),
     "day and clock": ("Date,Time,X,Y,Z\n", lambda t, ms: f"{t:%Y-%m-%d},{clock(t)},", COMMAS),
     "millis": ("", lambda t, ms: f"{1234 + ms},", COMMAS),
     "millis, label": ("", lambda t, ms: f"t: {ms} ms ", LABELS),
@@ -93,6 +97,8 @@ TIMED = {  # (header, the stamp of a time and its ms, rows)
     "seconds": ("", lambda t, ms: f"{1790000000.5 + ms / 1000:.6f} ", BLANKS),
     "seconds with commas": ("", lambda t, ms: f"{ms // 1000},{ms // 10 % 100:02d}\t", commas("{}\t{}\t{}", G4)),
 }
+DATED = ("in brackets with its day", "with an arrow and its day", "CoolTerm", "CoolTerm, tabs", "ISO", "ISO without header", "European", "American",
+         "British", "day and clock", "European day and clock")
 WRITTEN = {"LF": lambda text: text.encode(), "CRLF, mark": lambda text: ("\ufeff" + text.replace("\n", "\r\n")).encode(),
            "UTF-16": lambda text: text.replace("\n", "\r\n").encode("utf-16")}
 
@@ -129,6 +135,20 @@ class Sketches(Case):
                 with self.subTest(name, how=how):
                     text = "".join(stamp(START + timedelta(milliseconds=10 * i), 10 * i) + row + "\n" for i, row in enumerate(rows))
                     self.gives(written(header + text), LSB, every(10000))
+
+    def test_a_pause_of_days_is_a_gap(self):
+        """3 days and 13 h, with and without a new month, however the day is written; only a clock without a day cannot know."""
+        for name, begins in itertools.product(DATED, (datetime(2026, 11, 22, 10), datetime(2026, 9, 30, 10), datetime(2026, 11, 30, 23))):
+            header, stamp, rows = TIMED[name]
+            with self.subTest(name, begins=begins):
+                times = [begins + timedelta(milliseconds=10 * i) + (i >= 30) * timedelta(days=3, hours=13) for i in range(ROWS)]
+                found, readings, said = self.imported(header + "".join(stamp(t, 0) + row + "\n" for t, row in zip(times, rows)))
+                self.assertEqual((readings, found), (LSB, [round((t - begins) / timedelta(microseconds=1)) for t in times]))
+                self.assertIn("1 gaps", said)
+
+    def test_a_day_in_no_known_form_is_reported(self):
+        text = "".join(f"Sunday;10:00:00.{10 * i:03d};{row}\n" for i, row in enumerate(SEMICOLONS))
+        self.assertIn("the day 'Sunday' is in no known form: ignored", self.gives("Date;Time;X;Y;Z\n" + text, LSB, every(10000)))
 
     def test_a_board_that_restarts_prints_its_banner_again(self):
         rows = lines("X: {} Y: {} Z: {} m/s^2 ", MS2)

@@ -96,7 +96,7 @@ class Refuses(Case):
         self.refused("", 1, "the file is empty")
         self.refused("# x\n\n", 2, "no header")
         self.refused("# x\nt_us,x,y,z\n", 2, "no rows after the header")
-        self.refused("t_us,x,y,z\n0,0,\0,0\n", 2, "a NUL byte: tilt import FILE reads UTF-16")
+        self.refused("t_us,x,y,z\n0,0,\0,0\n", 2, "a NUL byte: no text, or UTF-16, which tilt import FILE converts")
         with self.assertRaisesRegex(errors.TiltError, r"absent.csv: cannot be read: No such file"):
             stream.read(self.path.parent / "absent.csv")
         with self.assertRaisesRegex(errors.TiltError, "cannot be read: Is a directory"):

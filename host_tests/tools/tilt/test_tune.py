@@ -8,7 +8,9 @@ import os
 import pathlib
 import subprocess
 import sys
+import termios
 import unittest
+from unittest import mock
 
 import numpy as np
 from scipy import signal
@@ -79,6 +81,23 @@ class Fits(Case):
             self.assertLess(answer["fitted_lsb"], answer["default_lsb"])
             self.assertLess(answer["held_back"], 1.0)
 
+    def test_with_outliers_and_a_gap_the_error_from_the_truth_falls_too(self):
+        """Of each axis 5 % lie 300 LSB off, 3 s are missing. Neither they nor the rows after them are judged."""
+        rng = np.random.default_rng(6)
+        lsb, truth = turned(rng, *QUICK)
+        lsb += 300 * (rng.random(lsb.shape) < 0.05)
+        kept = np.r_[0:2500, 2800:len(lsb)]
+        stream.write(self.path, kept * 10000, lsb[kept])
+        samples = fitting.samples_of(stream.read(self.path), 1000)
+        values, there = self.answer("--filter", ROBUST)["values"], np.flatnonzero(samples.state[:, 0] == native.THERE)
+        self.assertEqual(len(there), len(kept))
+        self.assertFalse(samples.use[there[2500]:there[2520]].any() or samples.use[samples.state[:, 0] == native.MISSING].any())
+
+        def error(values):
+            shown = np.stack([axis["x_lsb_q16"] / 65536.0 for axis in fitting.run(samples, ROBUST, values)], axis=1)
+            return float(np.sqrt(np.mean((shown[there] - truth[kept])[samples.use[there]] ** 2)))
+        self.assertLess(error(values), fitting.WORTH * error({}))
+
     def test_a_gate_stays_near_its_default(self):
         """No outlier in the recording: nothing speaks for a gate, and it stays closed enough for those to come."""
         lsb, _ = turned(np.random.default_rng(2), 200.0, 1.0)
@@ -135,9 +154,11 @@ class Commands(Case):
     @unittest.skipUnless(os.path.exists(SIMRUN) and os.path.exists(FIRMWARE), IMAGES)
     def test_the_firmware_takes_the_lines_as_printed(self):
         self.write(turned(np.random.default_rng(5), *QUICK)[0])
+        typed = set()
         for name in pathlib.Path("build/uno/filters.txt").read_text(encoding="utf-8").split():
             commands = self.tune("--filter", name)[1].split("\n\n")[1:]
             lines = commands[0].split("\n")[:-1] if commands else []
+            typed |= {name} if lines else set()
             words = [word for number, line in enumerate(lines) for word in ("--cmd", f"{200 + 150 * number}:{line}")]
             out = self.folder / "out.csv"
             subprocess.run([SIMRUN, "--fw", FIRMWARE, "--in", "sim/streams/tilt-fast.csv", "--out", out, "--max-ms", "3000", *words],
@@ -147,20 +168,61 @@ class Commands(Case):
             for line in lines:
                 key, value = line.split()
                 self.assertTrue(any(same(text.split()[2].rstrip(":,"), value) for text in said if text.startswith(f"# {key} ")), (line, said))
+        self.assertLessEqual({DEFAULT, PLAIN}, typed)
 
-    def applied(self, *answers):
-        """(status, what was printed) of --apply to a board that answers so."""
+    @unittest.skipUnless(os.path.exists(SIMRUN) and os.path.exists(FIRMWARE), IMAGES)
+    def test_apply_reaches_the_firmware(self):
+        self.write(turned(np.random.default_rng(1), *QUICK)[0])
+        command = [SIMRUN, "--fw", FIRMWARE, "--in", "sim/streams/tilt-fast.csv", "--out", self.folder / "all.csv", "--pty", "--loop"]
+        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as board:
+            try:
+                name = next(line for line in board.stderr if "UART on" in line).split()[-1]
+                answer = self.answer("--filter", PLAIN, "--apply", name)
+            finally:
+                board.terminate()
+        self.assertEqual(list(answer["answers"]), answer["commands"])
+        for line, said in answer["answers"].items():
+            self.assertTrue(same(said.split()[2].rstrip(":,"), line.split()[1]), (line, said))
+
+    def applied(self, *answers, words=(), speed=None):
+        """(status, what was printed) of --apply to a board that answers so, and hears nothing before its header."""
         self.write(turned(np.random.default_rng(1), *QUICK)[0])
 
         def script(board):
-            board.send(BANNER + HEADER + rows(0, 5))
+            board.send(rows(0, 500) + BANNER)
+            board.typed = b""
+            board.send(HEADER + rows(0, 5))
             for heard, answer in answers:
                 board.heard(heard)
                 board.send(rows(5, 8) + answer + rows(8, 10))
-        with FakeBoard(self.folder, script) as board:
-            status, out, err = self.tune("--filter", PLAIN, "--apply", board.name)
+        with FakeBoard(self.folder, script, speed) as board:
+            status, out, err = self.tune("--filter", PLAIN, "--apply", board.name, *words)
         self.assertEqual(err, "")
         return status, out
+
+    def test_apply_at_another_baud_rate(self):
+        answers = (b"filter ", b"# filter %s\n" % PLAIN.encode()), (b"rate 100\n", b"# rate 100 Hz\n"), (b"q ", b"# q 50000 LSB2/s3: 1 to 1e9\n")
+        status, out = self.applied(*answers, words=("--baud", 500000), speed=termios.B500000)
+        self.assertEqual(status, 0, out)
+        with mock.patch.object(tune, "HEADER_S", 0.1), mock.patch.object(tune, "ANSWER_S", 0.1):
+            status, out = self.applied(speed=termios.B500000)
+        self.assertEqual(status, 1)
+        self.assertIn("no answer at 115200 baud: give --baud N", out)
+        status, _, err = self.tune("--baud", 12345)
+        self.assertEqual(status, 2)
+        self.assertIn("--baud 12345: choose from", err)
+
+    def test_apply_with_json_prints_one_object(self):
+        status, out = self.applied((b"filter ", b"# refused 4: filter is one of one two\n"), words=["--json"])
+        self.assertEqual(status, 1)
+        self.assertEqual(json.loads(out)["answers"], {f"filter {PLAIN}": "# refused 4: filter is one of one two"})
+
+    def test_apply_of_nothing_is_reported(self):
+        self.write(np.round(np.random.default_rng(3).normal([0, 0, 256], 2.0, (1000, 3))))
+        status, out, _ = self.tune("--apply", self.folder / "no port")
+        self.assertEqual(status, 0)
+        self.assertTrue(out.endswith("nothing typed: the board keeps the values that it has\n"), out)
+        self.assertEqual(self.answer("--apply", self.folder / "no port")["answers"], {})
 
     def test_apply_types_them_and_reads_the_answers(self):
         status, out = self.applied((b"filter ", b"# filter %s\n" % PLAIN.encode()), (b"rate 100\n", b"# rate 100 Hz\n"),

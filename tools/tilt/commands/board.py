@@ -50,8 +50,7 @@ def checked(args):
         from serial.tools import list_ports
         names = ", ".join(port.device for port in list_ports.comports())
         raise TiltError(f"no port given: tilt board PORT (ports: {names})" if names else "no port given and no serial port found: plug the board in")
-    if args.baud not in protocol.BAUDS:
-        raise TiltError(f"--baud {args.baud}: choose from {', '.join(map(str, protocol.BAUDS))}")
+    protocol.check_baud(args.baud)
     if args.resume and args.output:
         raise TiltError("-o and --resume both name the record: leave one of them out")
     return args

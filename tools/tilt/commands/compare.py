@@ -36,13 +36,13 @@ def rows_of(tables):
 def facts_of(stream, tables, rate_dhz):
     """Properties of the recording itself: {outliers_percent, rest_seconds, still_share}, and the stretches at rest."""
     import numpy as np
-    from tilt import judge, rest
+    from tilt import judge, rest, smoother
 
     rows, state = rows_of(tables)
-    found = rest.find(rows["lsb"], (state == 1).all(axis=1), rate_dhz / 10)
+    found = rest.find(rows["lsb"], smoother.complete(state == 1), rate_dhz / 10)
     probes = judge.probes_of(ROBUST, rate_dhz, rows, state)
     use = judge.judged([probes])
-    far = [judge.innovations(axis)[use] ** 2 > judge.CUT ** 2 * judge.variance_of(axis)[use] / judge.BOARD_FACTOR for axis in probes]
+    far = [judge.innovations(axis)[use] ** 2 > judge.CUT ** 2 * judge.variance_of(axis)[use] / judge.BOARD_FACTOR for axis in probes.values()]
     outliers = 100.0 * float(np.mean(far)) if np.any(use) else 0.0
     facts = {"outliers_percent": outliers, "rest_seconds": found.seconds, "still_share": found.seconds / max(stream.seconds, 1e-9)}
     return facts, found
@@ -137,9 +137,9 @@ def why(answer):
         said.append(f"{answer['rows_judged']} rows are too few to distinguish filters.")
     elif answer["same_as_best"]:
         said.append(f"Within the noise of this recording it is no better than {', '.join(answer['same_as_best'])}: keep the one you know.")
-    others = [row for row in answer["filters"] if row["told_from_best"]]
+    others = [row for row in answer["filters"] if row["told_from_best"] and row["worse_percent"] > 0.0]
     if others:
-        listed = ", ".join(f"{row['filter']} {much(row)}" for row in others if row["worse_percent"] > 0.0)
+        listed = ", ".join(f"{row['filter']} {much(row)}" for row in others)
         said.append(f"Certainly worse: {listed}.")
     return said + reasons(answer, rows, best) + [price(best)]
 

@@ -290,8 +290,7 @@ def default_path():
 def checked(args):
     if args.seconds is not None and not 0 < args.seconds < float("inf"):
         raise TiltError(f"--seconds {args.seconds:g}: give a time above 0")
-    if args.baud not in protocol.BAUDS:
-        raise TiltError(f"--baud {args.baud}: choose from {', '.join(map(str, protocol.BAUDS))}")
+    protocol.check_baud(args.baud)
 
 
 @contextlib.contextmanager

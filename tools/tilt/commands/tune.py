@@ -2,7 +2,7 @@
 
 The values are those with the least distance from the recording smoothed without lag, as the shipped code runs them. They are printed only if
 values from the rest of the recording serve each part of it too; otherwise the defaults stay, and the output says why. The board measures the
-sensor's noise itself. --apply types the commands and reads the answers; `save` then keeps them.
+sensor's noise itself. --apply resets the board, types the commands and reads the answers; `save` then keeps them.
 
 Status: 0 done, also where the defaults stay; 1 with --apply: the board refused or did not answer; 2 a file, an option or the port cannot be used.
 """
@@ -10,19 +10,22 @@ import itertools
 import json
 import time
 
+from tilt import protocol
 from tilt.errors import TiltError
-from tilt.numbers import real_option
+from tilt.numbers import real_option, whole_option
 
 NAME = "tune"
 SUMMARY = "fit a filter's parameters to a recording"
-ANSWER_S = 5.0
+HEADER_S, ANSWER_S = 4.0, 5.0  # a reset board sends its header within 3 s; one that has no reset line never does
 
 
 def arguments(parser):
-    parser.add_argument("stream", metavar="STREAM", help="recording (docs/protocol.md, Streams): the motion you mean, 15 s of it and more")
+    parser.add_argument("stream", metavar="STREAM", help="recording (docs/protocol.md, Streams): the motion you mean, 15 s of it or more")
     parser.add_argument("--filter", metavar="NAME", help="which filter (default: the one that the firmware starts with)")
     parser.add_argument("--rate", metavar="HZ", type=real_option, help="output data rate of the board (default: nearest to the recording's)")
     parser.add_argument("--apply", metavar="PORT", help="type the commands into the board at this port")
+    parser.add_argument("--baud", type=whole_option, default=protocol.BAUD_AT_START, metavar="N",
+                        help=f"baud rate of --apply (default {protocol.BAUD_AT_START})")
     parser.add_argument("--json", action="store_true", help="print all results as one JSON object")
 
 
@@ -65,23 +68,24 @@ def lines(answer):
         return said + [f"keep the defaults of {answer['filter']}: {answer['reason']}"]
     better = 100.0 * (answer["fitted_lsb"] / answer["default_lsb"] - 1.0)
     return said + [f"{answer['filter']}: {answer['default_lsb']:.2f} LSB rms from the smoothed recording with the defaults, "
-                   f"{answer['fitted_lsb']:.2f} ({better:+.1f} %) with these values; "
-                   f"{100.0 * (answer['held_back'] - 1.0):+.1f} % on parts that they were not fitted to",
+                   f"{answer['fitted_lsb']:.2f} ({better:+.1f} %) with these values",
+                   f"values chosen by three quarters of the recording change the fourth by {100.0 * (answer['held_back'] - 1.0):+.1f} %",
                    f"flash: {answer['flash']}", "", *answer["commands"]]
 
 
-def apply(name, commands):
-    """Types the commands into a board; TiltError if the port cannot be opened. Prints the answers; returns what went wrong."""
-    from tilt import protocol
+def apply(name, baud, commands, say):
+    """Resets the board, types the commands and prints the answers by say. Returns ({command: answer or None}, what went wrong); TiltError if the
+    port cannot be opened."""
     from tilt.port import Gone, Port
 
-    port, failed = Port(name, protocol.BAUD_AT_START, reset=False), []
+    port, answers, failed = Port(name, baud), {}, []
     port.open()
     try:
+        line_that(protocol.is_header, port, HEADER_S)  # before it the boot loader takes what is typed
         for command in commands:
             port.send(command)
-            answer = answer_to(command, port)
-            print(f"{command}: {answer or 'no answer'}")
+            answers[command] = answer = line_that(lambda said, command=command: protocol.answers(command, said), port, ANSWER_S)
+            say(f"{command}: {answer or f'no answer at {baud} baud: give --baud N if the board has another rate'}")
             if answer is None or answer.startswith(protocol.REFUSED):
                 failed.append(command)
                 break  # the values belong together
@@ -89,19 +93,17 @@ def apply(name, commands):
         failed.append("the port is gone")
     finally:
         port.close()
-    return failed
+    return answers, failed
 
 
-def answer_to(command, port):
-    """The board's line, or None."""
-    from tilt import protocol
-
-    text, end = b"", time.monotonic() + ANSWER_S
+def line_that(wanted, port, wait_s):
+    """The board's next such line, without a cut row before its #; None if none comes."""
+    text, end = b"", time.monotonic() + wait_s
     while time.monotonic() < end:
         *whole, text = (text + port.read()).split(b"\n")
         for line in whole:
-            said = line[line.find(b"#"):].decode("latin-1").strip() if b"#" in line else ""
-            if said and protocol.answers(command, said):
+            said = line[max(line.find(b"#"), 0):].decode("latin-1").strip()
+            if wanted(said):
                 return said
     return None
 
@@ -112,11 +114,14 @@ def run(args):
     name = args.filter or native.filters()[0]
     if native.chosen(name) != [name]:
         raise TiltError(f"--filter {name}: give one filter")
+    protocol.check_baud(args.baud)
     stream = streams.read(args.stream)
-    answer = measured(stream, name, native.rate_of(stream, args.rate))
-    print(json.dumps(answer, indent=1) if args.json else "\n".join(lines(answer)))
-    if args.apply and answer["commands"]:
-        failed = apply(args.apply, answer["commands"])
-        print(f"not set: {', '.join(failed)}" if failed else "set; type save to keep them")
-        return 1 if failed else 0
-    return 0
+    answer, failed, say = measured(stream, name, native.rate_of(stream, args.rate)), [], (lambda text: None) if args.json else print
+    say("\n".join(lines(answer)))
+    if args.apply:
+        answer["answers"], failed = apply(args.apply, args.baud, answer["commands"], say) if answer["commands"] else ({}, [])
+        say(f"not set: {', '.join(failed)}" if failed else "set; type save to keep them" if answer["commands"] else
+            "nothing typed: the board keeps the values that it has")
+    if args.json:
+        print(json.dumps(answer, indent=1))
+    return 1 if failed else 0

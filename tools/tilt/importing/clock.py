@@ -23,6 +23,8 @@ def to_us(readings, rate, notes):
     if readings.time_unit == "count":
         raise TiltError(f"{readings.path}: a sample counter, but no times: give the rate with --rate HZ")
     unit = readings.time_unit or unit_by_steps(readings)
+    if unit == "days":
+        readings.time, unit = nearest_days(readings.time), "s"
     time = segments_joined(readings, unwrapped(readings, unit))
     if readings.own:
         return time.astype(np.int64)
@@ -30,6 +32,16 @@ def to_us(readings, rate, notes):
     if first != 0.0:
         notes.append(f"first time {first:.6f} s" if unit == "s" else f"first time {first:g} {'s of the day' if unit == 'clock' else unit}")
     return np.rint((time - first) * (1e6 / PER_SECOND[unit])).astype(np.int64)
+
+
+def nearest_days(time):
+    """Seconds since 1970 with day and month as they are or, where that brings the rows nearer together, the other way round."""
+    days = (time // DAY_S).astype("datetime64[D]")
+    months, years = days.astype("datetime64[M]"), days.astype("datetime64[Y]")
+    month, date = (months - years).astype(int), (days - months).astype(int)  # from 0
+    turned = (years.astype("datetime64[M]") + date).astype("datetime64[D]") + month
+    other = np.where(date < 12, turned, days).astype(float) * DAY_S + time % DAY_S
+    return other if np.ptp(other) < np.ptp(time) else time
 
 
 def of_count(readings, rate, notes):

@@ -29,6 +29,7 @@ class Columns:
     """Positions in a row, from 0."""
     axes: tuple
     time: Optional[int] = None
+    day: Optional[int] = None  # of a time that is a clock
     time_unit: Optional[str] = None
     unit: Optional[str] = None
     multiplier: Optional[int] = None
@@ -36,6 +37,12 @@ class Columns:
     notes: list = field(default_factory=list)
     other_sensors: bool = False
     own: bool = False  # a stream by docs/protocol.md: its time is kept
+
+    def time_in(self, cells, stamp):
+        """The text of a row's time, None without one. stamp: what the serial monitor put before the row."""
+        if self.time is None:
+            return stamp
+        return cells[self.time] if self.day is None else f"{cells[self.day]} {cells[self.time]}"
 
 
 def plain_name(text):
@@ -131,7 +138,8 @@ def of_option(text, cells, path):
         elif word.lower() in words:
             found.append(words.index(word.lower()))
         else:
-            raise TiltError(f"{path}: --columns: no column '{word}'" + (f" among {', '.join(words)}" if words else ", and no header"))
+            remedy = f"choose from {', '.join(words)}" if words else "give numbers, there is no header"
+            raise TiltError(f"{path}: --columns: no column '{word}': {remedy}")
     if len(wanted) == 3:
         return Columns(tuple(found))
     named = names[found[0]] if found[0] < len(names) else ("", None)

@@ -8,7 +8,7 @@ NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 IS_NUMBER = re.compile(rf"{NUMBER}|[-+]?nan", re.I)
 NUMBERS = re.compile(rf"(?<![\w.]){NUMBER}(?![\w])")
 DATE, CLOCK = r"\d{4}-\d{2}-\d{2}[ T]", r"\d{1,2}:\d{2}:\d{2}(?:\.\d+)?"
-CLOCKED = re.compile(rf"(?:\[(?:{DATE})?(?P<boxed>{CLOCK})\]\s*(?:->)?|(?:{DATE})?(?P<arrowed>{CLOCK})\s*-?>|{DATE}(?P<dated>{CLOCK})(?=\s))"
+CLOCKED = re.compile(rf"(?:\[(?P<boxed>(?:{DATE})?{CLOCK})\]\s*(?:->)?|(?P<arrowed>(?:{DATE})?{CLOCK})\s*-?>|(?P<dated>{DATE}{CLOCK})(?=\s))"
                      r"\s?(?P<rest>.*)")
 LITERAL = re.compile(r"""b(['"])(.*)\1\s*""")
 ESCAPED_ENDS = re.compile(r"(?:\\[rnt])+$")

@@ -14,7 +14,8 @@ MISSING_FLAGS = FLAG_COASTED | FLAG_SILENT  # docs/protocol.md: rows with these 
 @dataclass
 class Readings:
     """values: (n, 3) float64 in the file's unit, NaN for a missing reading. lines: line of each row, counted from 1, or None.
-    time: n float64 in time_unit (s, ms, us, ns; clock: seconds of a day; count: samples; None: determined by its steps), or None."""
+    time: n float64 in time_unit (s, ms, us, ns; clock: seconds of a day; days: s, day and month perhaps the other way round; count: samples;
+    None: determined by its steps), or None."""
     path: str
     form: str
     values: np.ndarray

@@ -1,4 +1,5 @@
 """What the first lines of a text settle for the whole file: how a line becomes fields, their number, and their meaning."""
+import functools
 import re
 from collections import Counter
 from dataclasses import dataclass
@@ -13,8 +14,8 @@ from tilt.importing import forms
 
 SAMPLE_LINES, SAMPLE_ROWS = 4000, 400
 NAME = re.compile(r"[A-Za-z_][\w ()/^*.-]*")
-WALL = re.compile(r"(?:\d{1,2}[./-]\d{1,2}[./-]\d{4},? )?(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)")
-DATED = re.compile(r"\d{4}-\d{2}-\d{2}[ T]\d{2}:\d{2}:\d{2}(?:[.,]\d+)?(?:Z|[+-]\d{2}:?\d{2})?")
+DAY = r"\d{4}[./-]\d{1,2}[./-]\d{1,2}|\d{1,2}[./-]\d{1,2}[./-]\d{4}"
+WALL = re.compile(rf"(?:(?P<day>{DAY})(?:,? |T))?(\d{{1,2}}):(\d{{2}}):(\d{{2}}(?:[.,]\d+)?)(?:Z|[+-]\d{{2}}:?\d{{2}})?")
 
 
 @dataclass
@@ -29,21 +30,28 @@ class Settled:
 
 
 def number_or_time(text):
-    """(value, unit): a number (unit None), a time of day in seconds (clock), or a date in seconds since 1970 (s). Otherwise ValueError."""
+    """(value, unit): a number (unit None), a time of day in seconds (clock), or a day and time in seconds since 1970 (s; days: day and month may
+    be the other way round). Otherwise ValueError."""
     try:
         return float(text), None
     except ValueError:
         pass
-    text = text.strip("\"'")
-    wall = WALL.fullmatch(text)
-    if wall:
-        hours, minutes, seconds = wall.groups()
-        return int(hours) * 3600 + int(minutes) * 60 + float(seconds.replace(",", ".")), "clock"
-    if DATED.fullmatch(text):
-        whole, _, fraction = re.sub(r"(Z|[+-]\d{2}:?\d{2})$", "", text).replace(",", ".").partition(".")
-        moment = datetime.fromisoformat(whole.replace("T", " ")).replace(tzinfo=timezone.utc)
-        return moment.timestamp() + float(f"0.{fraction or 0}"), "s"
-    raise ValueError(text)
+    wall = WALL.fullmatch(text.strip("\"'"))
+    if wall is None:
+        raise ValueError(text)
+    day, hours, minutes, seconds = wall.groups()
+    midnight, unit = midnight_of(day) if day else (0, "clock")
+    return midnight + int(hours) * 3600 + int(minutes) * 60 + float(seconds.replace(",", ".")), unit
+
+
+@functools.lru_cache(maxsize=64)
+def midnight_of(day):
+    """(seconds since 1970, unit) of a day; a slash puts the month first, where that gives a day."""
+    first, second, third = map(int, re.split("[./-]", day))
+    if first > 31:
+        return datetime(first, second, third, tzinfo=timezone.utc).timestamp(), "s"
+    month, date = (first, second) if second > 12 or ("/" in day and first <= 12) else (second, first)
+    return datetime(third, month, date, tzinfo=timezone.utc).timestamp(), "days"
 
 
 def header_cells(line, wanted=frozenset()):
@@ -80,16 +88,17 @@ def unknown_header(plan, lines, rows, first_line):
 
 
 def sampled(plan, lines, first_line):
-    """[(line, fields)] of the first rows."""
-    rows = []
+    """([(line, fields)] of the first rows, the stamp of the serial monitor before the first)"""
+    rows, stamp = [], None
     for line, text in enumerate(lines, first_line):
         found = plan.payload(text) if text.strip() and text.lstrip()[0] != "#" else None
         cells = plan.fields(found[1]) if found else None
         if cells and sum(forms.is_number(cell) for cell in cells) >= 3:
+            stamp = stamp if rows else found[0]
             rows.append((line, cells))
         if len(rows) == SAMPLE_ROWS:
             break
-    return rows
+    return rows, stamp
 
 
 def whole_sensors(header, width):
@@ -134,6 +143,26 @@ def numbers_of(rows, width):
     return np.array([[number(cell) for cell in cells[:width]] for _, cells in rows if len(cells) >= width])
 
 
+def day_of(header, chosen, cells):
+    """The column of the day, where the time is a clock without one; else None."""
+    names = [name for name, _ in cols.names_of(header or [])]
+    day = names.index("date") if "date" in names else None
+    if day in (None, chosen.time) or chosen.time is None or day >= len(cells) or unit_of(cells[chosen.time]) != "clock":
+        return None
+    if unit_of(f"{cells[day]} {cells[chosen.time]}") is None:
+        chosen.notes.append(f"the day '{cells[day]}' is in no known form: ignored")
+        return None
+    return day
+
+
+def unit_of(text):
+    """The unit of a time with colons; None for any other text."""
+    try:
+        return number_or_time(text)[1]
+    except ValueError:
+        return None  # reading the row reports it
+
+
 def decimals_of(rows, axes):
     """The most digits after a decimal point in the sample."""
     cells = [cells[index] for _, cells in rows for index in axes if index < len(cells)]
@@ -156,7 +185,7 @@ def settle(path, options, lines, first_line):
         raise TiltError(f"{path}: only a header, no rows of numbers: record again")
     if plan is not None and header:
         plan.lead = 0
-    rows = sampled(plan, lines, first_line) if plan else []
+    rows, stamp = sampled(plan, lines, first_line) if plan else ([], None)
     if not rows:
         raise TiltError(f"{path}: not a recording: no row of three numbers in its first {len(lines)} lines: {no_rows_hint(lines)}")
     header = list(plan.names) if plan.names is not None else header or unknown_header(plan, lines, rows, first_line)
@@ -166,11 +195,8 @@ def settle(path, options, lines, first_line):
         chosen.other_sensors = True
         chosen.notes.append(f"lines '{plan.keyword}:' used, of {', '.join(plan.keywords)} (--sensor N for another)")
     chosen.notes += [note] if note else []
-    unit = "clock" if plan.clock and chosen.time is None else chosen.time_unit
-    if chosen.time is not None and chosen.time < len(rows[0][1]):
-        try:
-            unit = number_or_time(rows[0][1][chosen.time])[1] or unit
-        except ValueError:
-            pass  # reading the row reports it
+    first = next(cells for _, cells in rows if len(cells) >= width)
+    chosen.day = day_of(header, chosen, first)
+    unit = unit_of(chosen.time_in(first, stamp) or "") or chosen.time_unit
     chosen.unit = chosen.unit or plan.unit
     return Settled(plan, chosen, header, width, trail, decimals_of(rows, chosen.axes), unit)

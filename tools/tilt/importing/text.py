@@ -135,7 +135,7 @@ class Reader:
     def numbers(self, line, cells, clock):
         """The wanted columns of a row. clock: what the serial monitor put before it."""
         texts = [cells[column] if column is not None else None for column in self.wanted]
-        texts[TIME] = clock if texts[TIME] is None else texts[TIME]
+        texts[TIME] = self.settled.columns.time_in(cells, clock)
         return [np.nan if text is None else self.number(line, place, text) for place, text in enumerate(texts)]
 
     def number(self, line, place, text):
