@@ -68,6 +68,8 @@ class TestFile(unittest.TestCase):
         for licence in LICENCES:
             self.assertIn(html.escape(pathlib.Path(licence).read_text(encoding="utf-8")), text)
 
+
+class TestSources(unittest.TestCase):
     def test_who_imports_whom(self):
         """The worker uses second's UNO and sensor, which know nothing of it, of sim, of lib or of the firmware."""
         for folder, allowed in (("web/worker", r"\./\w+\.mjs|\.\./\.\./second/\w+\.mjs"), ("second", r"\./\w+\.mjs|node:[\w/]+")):
