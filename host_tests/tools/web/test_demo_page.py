@@ -1,13 +1,18 @@
 #!/usr/bin/env python3
-"""Tests of the demo as a page in a headless Chromium: what it holds, bad input, a phone's motion sensor, two sizes of window, the keyboard.
+"""Tests of the demo as a page in a headless Chromium: what it holds, bad input, a phone's motion sensor, two sizes of window, the keyboard;
+and of what builds it.
 Run from the repository root with build/venv/bin/python."""
 import contextlib
 import functools
 import html
 import http.server
+import os
 import pathlib
 import re
+import shutil
+import subprocess
 import sys
+import tempfile
 import threading
 import unittest
 
@@ -76,6 +81,53 @@ class TestSources(unittest.TestCase):
             for path in pathlib.Path(folder).glob("*.mjs"):
                 for name in re.findall(r"""\bfrom ['"]([^'"]+)""", path.read_text(encoding="utf-8")):
                     self.assertRegex(name, f"^({allowed})$", path)
+
+
+# npm that installs what is asked of it, esbuild's program with status $ESBUILD
+NPM = """#!/bin/sh
+mkdir -p node_modules/.bin node_modules/avr8js node_modules/esbuild
+printf '#!/bin/sh\\nexit %s\\n' "$ESBUILD" > node_modules/.bin/esbuild
+chmod +x node_modules/.bin/esbuild
+"""
+
+
+class TestBuild(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def program(self, name, text):
+        path = self.folder / "bin" / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text, encoding="ascii")
+        path.chmod(0o755)
+
+    def deps(self, group, node="20.19.0", esbuild=0):
+        """(status, words) of tools/deps.sh in a folder of its own, with a Node and an npm that are none."""
+        for name in ("tools/deps.sh", *(f"{folder}/{file}" for folder in ("web", "second") for file in ("package.json", "package-lock.json"))):
+            (self.folder / name).parent.mkdir(exist_ok=True)
+            shutil.copy(name, self.folder / name)
+        self.program("node", f"#!/bin/sh\necho v{node}\n")
+        self.program("npm", NPM)
+        env = {**os.environ, "PATH": f"{self.folder / 'bin'}:{os.environ['PATH']}", "ESBUILD": str(esbuild)}
+        done = subprocess.run(["sh", "tools/deps.sh", group], cwd=self.folder, env=env, capture_output=True, text=True, check=False)
+        return done.returncode, done.stdout + done.stderr
+
+    def test_node_of_age(self):
+        for group, node, status in (("demo", "18.0.0", 0), ("demo", "16.20.2", 3), ("second", "20.19.0", 0), ("second", "20.18.3", 3)):
+            said = self.deps(group, node)
+            self.assertEqual(said[0], status, said)
+            self.assertEqual("is too old" in said[1], bool(status), said)
+
+    def test_esbuild_without_its_program_is_fetched_again(self):
+        for broken, status in ((1, 3), (0, 0)):
+            said = self.deps("demo", esbuild=broken)
+            self.assertEqual(said[0], status, said)
+            self.assertIn("installing with npm into build/web", said[1])
+            self.assertEqual((self.folder / "build/web/node_modules").exists(), not broken)
+            self.assertEqual("left out esbuild's program" in said[1], bool(broken), said)
+        self.assertEqual(self.deps("demo"), (0, ""))
 
 
 @unittest.skipIf(WHY_NOT, WHY_NOT)
