@@ -129,6 +129,17 @@ class TestBuild(unittest.TestCase):
             self.assertEqual("left out esbuild's program" in said[1], bool(broken), said)
         self.assertEqual(self.deps("demo"), (0, ""))
 
+    def test_page_that_cannot_be_built_goes(self):
+        page, worker = self.folder / "demo/tilt-demo.html", self.folder / "web/worker.js"
+        (self.folder / "web/node_modules/esbuild").mkdir(parents=True)
+        (self.folder / "second/node_modules/avr8js").mkdir(parents=True)
+        for target in ("demo_built", "clean_demo"):
+            for path in (page, worker):
+                path.parent.mkdir(exist_ok=True)
+                path.write_text("old", encoding="ascii")
+            subprocess.run(["make", "-s", f"B={self.folder}", target], check=True, capture_output=True)
+            self.assertEqual((page.exists(), worker.exists()), (False, False), target)
+
 
 @unittest.skipIf(WHY_NOT, WHY_NOT)
 class TestBadInput(DemoCase):
