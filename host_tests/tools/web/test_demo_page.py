@@ -6,6 +6,7 @@ import contextlib
 import functools
 import html
 import http.server
+import json
 import os
 import pathlib
 import re
@@ -28,15 +29,16 @@ STREAM = "t_us,x,y,z\n" + "".join(f"{10000 * n},{n % 3},{n % 5},{256 + n % 2}\n"
 # name -> what is wrong with the text, as the page says it
 NO_RECORDINGS = {
     "empty.csv": ("", "empty.csv: the file is empty"),
-    "letter.txt": ("Dear all,\nhello\n", "letter.txt: line 1: missing column t_us"),
+    "letter.txt": ("Dear all,\nhello\n", "letter.txt: line 1: missing column t_us (a header with t_us,x,y,z comes first): tilt import FILE converts other recordings"),
     "axes.csv": ("t_us,x,y\n0,1,2\n", "axes.csv: line 1: missing column z"),
     "word.csv": (STREAM + "2000000,1,two,3\n", "word.csv: line 202: y is not a whole number: 'two'"),
+    "units.csv": (STREAM + "2000000,1,0.5,3\n", "units.csv: line 202: y is not a whole number: '0.5': tilt import FILE converts other units"),
     "range.csv": (STREAM + "2000000,1,4096,3\n", "range.csv: line 202: y is outside -4096..4095: 4096"),
     "back.csv": (STREAM + "10,1,2,3\n", "back.csv: line 202: time goes backwards: 10 after 1990000"),
     "fields.csv": (STREAM + "2000000,1,2\n", "fields.csv: line 202: 3 fields where the header has 4"),
     "header.csv": ("t_us,x,y,z\n", "header.csv: fewer than two rows after the header"),
     "image.png": ("\x89PNG\r\n\x1a\n\0\0\0", "image.png: line 1: missing column t_us"),
-    "nul.csv": (STREAM + "\0\n", "nul.csv: line 202: a NUL byte: this is no text file"),
+    "nul.csv": (STREAM + "\0\n", "nul.csv: line 202: a NUL byte: no text, or UTF-16, which tilt import FILE converts"),
 }
 FORBIDDEN = "Object.defineProperty(window, 'localStorage', { get() { throw new DOMException('denied', 'SecurityError'); } });"
 FULL = "Storage.prototype.setItem = () => { throw new DOMException('full', 'QuotaExceededError'); };"
@@ -81,6 +83,23 @@ class TestSources(unittest.TestCase):
             for path in pathlib.Path(folder).glob("*.mjs"):
                 for name in re.findall(r"""\bfrom ['"]([^'"]+)""", path.read_text(encoding="utf-8")):
                     self.assertRegex(name, f"^({allowed})$", path)
+
+
+# the row in force at 400 samples a second of a recording that lasts 2 s, before and after 100 s without a sample
+AWAY = """
+import { Recording, read } from './web/worker/recording.mjs';
+const recording = new Recording(read(TEXT)), rows = [];
+for (const us of [0, 2500, 9999, 10001, 100_000_000, 100_505_000, 102_015_000]) { recording.next(us, 2500); rows.push(recording.at); }
+console.log(rows.join());
+"""
+
+
+@unittest.skipUnless(shutil.which("node"), "no Node")
+class TestRecording(unittest.TestCase):
+    def test_time_passes_while_the_recording_is_away(self):
+        code = AWAY.replace("TEXT", json.dumps(STREAM))
+        said = subprocess.run(["node", "--input-type=module", "-e", code], capture_output=True, text=True, check=True).stdout
+        self.assertEqual(said.strip(), "0,0,0,1,0,50,1")
 
 
 # npm that installs what is asked of it, esbuild's program with status $ESBUILD
