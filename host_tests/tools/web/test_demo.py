@@ -15,6 +15,15 @@ ROWS = 2000
 COASTED_OR_FAULT = 2 | 16
 STREAMS = pathlib.Path("sim/streams")
 FAULTS = {"sda": 8, "unplug": 1, "int1": 5}
+# order: the reports of the worker's pace and of the EEPROM's content, with `saved` among them
+SAVES = """
+window.order = [];
+tiltPage.worker.addEventListener('message', ({ data }) => {
+  if (data.text?.includes('# saved')) order.push('saved');
+  order.push(...['status', 'eeprom'].filter((name) => name in data));
+});
+tiltPage.send('save');
+"""
 
 
 def apart(rows, others):
@@ -137,8 +146,10 @@ class TestHands(DemoCase):
         self.assertEqual(page.figures()["filters"], FIRMWARE.with_name("filters.txt").read_text(encoding="ascii").split())
         page.value(f"document.querySelector('input[value={ROBUST}]').click()")
         page.until(f"tiltPage.figures().filter === '{ROBUST}'")
-        page.value("tiltPage.send('save')")
-        page.until("heard.text.includes('# saved') && localStorage.length === 1")
+        page.value(SAVES)
+        page.until("order.includes('saved') && order.slice(order.indexOf('saved')).filter((each) => each === 'status').length === 2")
+        order = page.value("order")
+        self.assertIn("eeprom", order[:order.index("status", order.index("status", order.index("saved")) + 1)])  # before the second report
         again = self.demo()
         again.until(f"heard.text.includes('# settings: as saved') && tiltPage.figures().filter === '{ROBUST}'")
 
