@@ -196,9 +196,9 @@ class DemoPage extends Page {
 
   /* The board in the picture: as the truth says, else as the filtered angles say. Seen from the front, y away, x to the right. */
   turnBoard() {
-    const truth = this.measured.at(-1)?.[1] ?? this.newestTruth, { newest } = this;
-    if (truth) this.newestTruth = truth;
-    const [roll, pitch] = this.mode === "phone" || !truth ? [newest?.roll ?? 0, newest?.pitch ?? 0] : truth;
+    const last = this.measured.at(-1), { newest } = this;
+    if (last) this.newestTruth = last[1];
+    const [roll, pitch] = this.newestTruth ?? [newest?.roll ?? 0, newest?.pitch ?? 0];
     this.shown = [limited(roll), limited(pitch)];
     byId("board").style.transform = `rotateX(${(48 - roll).toFixed(1)}deg) rotateY(${pitch.toFixed(1)}deg)`;
   }
