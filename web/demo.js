@@ -147,6 +147,7 @@ class DemoPage extends Page {
   }
 
   mark(mode) {
+    for (const each of document.querySelectorAll("#outliers, #noise, [data-press=knock], [data-press=push]")) each.disabled = mode === "recording";
     this.mode = mode;
     document.querySelector(`[name=mode][value=${mode}]`).checked = true;
   }

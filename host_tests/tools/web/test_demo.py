@@ -183,3 +183,19 @@ class TestHands(DemoCase):
 if __name__ == "__main__":
     from unity_line import main
     main()
+    def test_the_board_follows_a_recording_without_truth(self):
+        page = self.demo()
+        self.drop(page, "tilted.csv", "t_us,x,y,z\n" + "".join(f"{10000 * n},{n % 3},{187 + n % 2},181\n" for n in range(500)))
+        page.until("Math.abs(tiltPage.newest.roll - 45) < 2")
+        page.until("Math.abs(tiltPage.shown[0] - tiltPage.newest.roll) < 0.1 && Math.abs(tiltPage.shown[1]) < 2")
+
+    def test_what_does_nothing_to_a_recording_is_disabled(self):
+        page = self.demo()
+        disabled = "[...document.querySelectorAll('.world :disabled')].map((each) => each.id || each.dataset.press)"
+        self.assertEqual(page.value(disabled), [])
+        self.drop(page, "level.csv", "t_us,x,y,z\n0,0,1,256\n10000,1,0,256\n")
+        page.until("tiltPage.figures().sensor === 'recording'")
+        self.assertEqual(page.value(disabled), ["outliers", "noise", "knock", "push"])
+        page.value("document.querySelector('[value=self]').click()")
+        self.assertEqual(page.value(disabled), [])
+
