@@ -23,7 +23,7 @@ class DemoPage extends Page {
     flash.set(bytesOf(byId("image").textContent));
     const seed = Number(new URLSearchParams(location.hash.slice(1)).get("seed") ?? 1);
     this.worker = new Worker(URL.createObjectURL(new Blob([byId("worker").textContent], { type: "text/javascript" })));
-    this.worker.onmessage = ({ data }) => { for (const [name, value] of Object.entries(data)) this.on[name]?.(value, data); };
+    this.worker.onmessage = ({ data }) => { for (const [name, value] of Object.entries(data)) this.on[name]?.(value); };
     this.worker.onerror = (event) => this.stopped(event.message || "the simulation could not be started");
     const world = { outliers: Number(byId("outliers").value) / 100, noise: Number(byId("noise").value) };
     this.tell({ start: { program: flash.buffer, eeprom: this.kept.read(), seed, world } });
@@ -65,7 +65,7 @@ class DemoPage extends Page {
     this.behind = slow ? this.behind + 1 : 0;
     if (this.behind === BEHIND_FOR) {
       this.notice(`This browser falls behind: ${pace.toFixed(2)} times real time instead of ${speed}. The simulation goes on, slower.`);
-    };
+    }
   }
 
   state(kind, words) {
@@ -74,7 +74,6 @@ class DemoPage extends Page {
   }
 
   replays({ name, rows, hz }) {
-    this.rowsOfRecording = rows;
     byId("recording-choice").hidden = false;
     byId("recording-name").textContent = `replays ${name}`;
     this.mark("recording");
@@ -147,8 +146,8 @@ class DemoPage extends Page {
   }
 
   mark(mode) {
-    for (const each of document.querySelectorAll("#outliers, #noise, [data-press=knock], [data-press=push]")) each.disabled = mode === "recording";
     this.mode = mode;
+    for (const each of document.querySelectorAll("#outliers, #noise, [data-press=knock], [data-press=push]")) each.disabled = mode === "recording";
     document.querySelector(`[name=mode][value=${mode}]`).checked = true;
   }
 
@@ -225,7 +224,7 @@ class DemoPage extends Page {
     }
   }
 
-  figures() { return { ...super.figures(), pace: this.pace, mode: this.mode ?? "self" }; }
+  figures() { return { ...super.figures(), pace: this.pace, sensor: this.mode ?? "self" }; }
 }
 
 const tiltPage = new DemoPage();

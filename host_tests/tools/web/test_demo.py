@@ -8,14 +8,13 @@ import unittest
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import ROBUST  # noqa: E402
-from demo_support import FIRMWARE, SIMRUN, WHY_NOT, DemoCase, rows_of, simrun  # noqa: E402
+from demo_support import FIRMWARE, PAGE, SIMRUN, WHY_NOT, DemoCase, rows_of, simrun  # noqa: E402
 
 SEED = 7
 ROWS = 2000
 STAMP_SPREAD_US = 20
 COASTED_OR_FAULT = 2 | 16
 STREAMS = pathlib.Path("sim/streams")
-FAULTS = {"sda": 8, "unplug": 1, "int1": 5}
 # order: the reports of the worker's pace and of the EEPROM's content, with `saved` among them
 SAVES = """
 window.order = [];
@@ -25,6 +24,7 @@ tiltPage.worker.addEventListener('message', ({ data }) => {
 });
 tiltPage.send('save');
 """
+FAULTS = {"sda": 8, "unplug": 1, "int1": 5}
 
 
 def apart(rows, others):
@@ -70,7 +70,7 @@ class TestRows(DemoCase):
         self.assertNotEqual(first, other)
 
     def address(self, seed):
-        return f"{pathlib.Path('build/demo/tilt-demo.html').resolve().as_uri()}#seed={seed}"
+        return f"{PAGE.resolve().as_uri()}#seed={seed}"
 
     def replayed(self, name):
         """The page's rows of a stream from its first row and a cold start on, and simrun's."""
@@ -183,7 +183,7 @@ class TestHands(DemoCase):
         for kind, by in (("mousePressed", 0), ("mouseMoved", 25), ("mouseMoved", 50), ("mouseReleased", 50)):
             held = 0 if kind == "mouseReleased" else 1
             page.call("Input.dispatchMouseEvent", type=kind, x=box[0] + by, y=box[1], button="left", buttons=held, clickCount=1)
-        self.assertEqual(page.figures()["mode"], "hand")
+        self.assertEqual(page.figures()["sensor"], "hand")
         page.value("pad.focus()")
         page.press("Home")
         for _ in range(4):
@@ -191,10 +191,6 @@ class TestHands(DemoCase):
         page.until("Math.abs(tiltPage.newest.truePitch - 20) < 0.1 && Math.abs(tiltPage.newest.pitch - 20) < 2")
         page.until("Math.abs(tiltPage.newest.trueRoll) < 0.1")
 
-
-if __name__ == "__main__":
-    from unity_line import main
-    main()
     def test_the_board_follows_a_recording_without_truth(self):
         page = self.demo()
         self.drop(page, "tilted.csv", "t_us,x,y,z\n" + "".join(f"{10000 * n},{n % 3},{187 + n % 2},181\n" for n in range(500)))
@@ -211,3 +207,7 @@ if __name__ == "__main__":
         page.value("document.querySelector('[value=self]').click()")
         self.assertEqual(page.value(disabled), [])
 
+
+if __name__ == "__main__":
+    from unity_line import main
+    main()

@@ -167,13 +167,13 @@ class TestBadInput(DemoCase):
         for name, (text, why) in NO_RECORDINGS.items():
             self.drop(page, name, text)
             self.notice(page, why)
-            self.assertEqual(page.figures()["mode"], "self")
+            self.assertEqual(page.figures()["sensor"], "self")
         page.value("dispatchEvent(new DragEvent('drop', { dataTransfer: new DataTransfer(), cancelable: true }))")
         self.notice(page, "What was dropped is no file")
         page.value("tiltPage.open({ name: 'long.csv', size: 65e6 })")
         self.notice(page, "long.csv: more than 64 MB")
         self.drop(page, "good.csv", STREAM)
-        page.until("tiltPage.figures().mode === 'recording'")
+        page.until("tiltPage.figures().sensor === 'recording'")
 
     def test_storage_forbidden(self):
         page = self.demo(FORBIDDEN)
@@ -228,7 +228,7 @@ class TestPhone(DemoCase):
         for sign, vendor in (("1", ""), ("-1", APPLE)):
             with served() as address:
                 page = self.chosen(address, PHONE.format(said="granted") + vendor + MOVES.replace("SIGN", sign))
-                page.until("Math.abs(tiltPage.newest.roll - 45) < 2 && tiltPage.figures().mode === 'phone'")
+                page.until("Math.abs(tiltPage.newest.roll - 45) < 2 && tiltPage.figures().sensor === 'phone'")
                 self.assertTrue(page.value("Number.isNaN(tiltPage.history.trueRoll[(tiltPage.history.count - 1) & (tiltPage.history.size - 1)])"))
 
     def test_refused(self):
@@ -236,7 +236,7 @@ class TestPhone(DemoCase):
             page = self.chosen(address, PHONE.format(said="denied"))
             self.notice(page, "the motion sensor was refused")
             self.assertEqual(page.value("asked"), True)
-            self.assertEqual(page.figures()["mode"], "self")
+            self.assertEqual(page.figures()["sensor"], "self")
 
     def test_a_device_without_one(self):
         with served() as address:
