@@ -84,6 +84,11 @@ class TestSources(unittest.TestCase):
                 for name in re.findall(r"""\bfrom ['"]([^'"]+)""", path.read_text(encoding="utf-8")):
                     self.assertRegex(name, f"^({allowed})$", path)
 
+    def test_a_wheel_holds_the_page_of_tilt_live_and_its_parts(self):
+        parts = re.findall(r'(?:stylesheet" href|script src)="([^"]+)"', pathlib.Path("web/live.html").read_text(encoding="utf-8"))
+        packed = re.search(r'"tilt.web" = \[([^]]*)\]', pathlib.Path("tools/pyproject.toml").read_text(encoding="ascii"))[1]
+        self.assertEqual(sorted(re.findall(r'"([^"]+)"', packed)), sorted(["live.html", *parts]))
+
 
 # the row in force at 400 samples a second of a recording that lasts 2 s, before and after 100 s without a sample
 AWAY = """
