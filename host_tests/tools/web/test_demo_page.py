@@ -275,7 +275,8 @@ class TestLooks(DemoCase):
                 self.assertEqual(page.value(self.OUTSIDE), [], f"{width} x {height}")
                 self.assertEqual(page.value(self.OVERLAPS), [], f"{width} x {height}")
                 page.value("tiltPage.note('fault 8: SDA held low: check SDA, SCL, pull-ups, GND'), tiltPage.notice('A line.')")
-                page.until("fault.classList.contains('lit')")
+                page.value("tiltPage.lamps.forEach((each) => Object.assign(each, { count: 123456, litMs: Infinity }))")  # all flags on
+                page.until("fault.classList.contains('lit') && tiltPage.lamps.every(({ item }) => item.innerText.includes('123,'))")
             if width == 1280:
                 continue
             for part in ("roll", "horizon", "pad"):  # without scrolling
