@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Tests of the demo in a headless Chromium: its rows and their times are simrun's for the same samples, of the virtual sensor and of a recording; faults by
-button and what comes after them; what `save` writes stays. Run from the repository root with build/venv/bin/python."""
+"""Tests of the demo in a headless Chromium: its rows and their times are simrun's for the same samples, of the virtual sensor and of a recording;
+faults by button and what comes after them; what `save` writes stays. Run from the repository root with build/venv/bin/python."""
 import pathlib
 import sys
 import unittest

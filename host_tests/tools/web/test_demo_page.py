@@ -29,7 +29,8 @@ STREAM = "t_us,x,y,z\n" + "".join(f"{10000 * n},{n % 3},{n % 5},{256 + n % 2}\n"
 # name -> what is wrong with the text, as the page says it
 NO_RECORDINGS = {
     "empty.csv": ("", "empty.csv: the file is empty"),
-    "letter.txt": ("Dear all,\nhello\n", "letter.txt: line 1: missing column t_us (a header with t_us,x,y,z comes first): tilt import FILE converts other recordings"),
+    "letter.txt": ("Dear all,\nhello\n", "letter.txt: line 1: missing column t_us (a header with t_us,x,y,z comes first): tilt import FILE "
+                   "converts other recordings"),
     "axes.csv": ("t_us,x,y\n0,1,2\n", "axes.csv: line 1: missing column z"),
     "word.csv": (STREAM + "2000000,1,two,3\n", "word.csv: line 202: y is not a whole number: 'two'"),
     "units.csv": (STREAM + "2000000,1,0.5,3\n", "units.csv: line 202: y is not a whole number: '0.5': tilt import FILE converts other units"),
