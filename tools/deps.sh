@@ -18,6 +18,7 @@ want_unity=no
 want_pio=no
 want_avr8js=no
 want_esbuild=no
+node_for='' # the folder whose package.json states the oldest sufficient Node
 pio_requirements='platformio==6.2.0 scons==4.11.1' # the versions that mk/scripts/pio_standins.py stands in for
 pio_venv=build/venv-pio
 fail_status=1 # 3 if what is missing is a reason to skip, not a failure
@@ -171,8 +172,8 @@ collect() {
             arduino) need_simulator; need g++ has g++; need python3 has python3; need arduino-core-avr has_arduino_core ;;
             fuzz) need_host_compiler; need python3 has python3; need binutils has objcopy ;;
             coverage) need_simulator; need_plots; need_unity; need gcovr has gcovr ;;
-            second) want_avr8js=yes; need nodejs has node; need npm has npm ;;
-            demo) want_avr8js=yes; want_esbuild=yes; need nodejs has node; need npm has npm; need python3 has python3 ;;
+            second) want_avr8js=yes; node_for=second; need nodejs has node; need npm has npm ;;
+            demo) want_avr8js=yes; want_esbuild=yes; node_for=${node_for:-web}; need nodejs has node; need npm has npm; need python3 has python3 ;;
             proof) need python3 has python3; need frama-c-base has frama-c ;;
             *) fail "unknown group '$group': use firmware, sim, test, check, flash, flashtest, arduino, bench, piocheck, papers, design, tilt, live, fuzz, coverage, proof, second or demo" ;;
         esac
@@ -280,9 +281,9 @@ install_pio() {
     echo "$pio_requirements" > "$pio_venv/requirements.installed"
 }
 
-# the oldest sufficient Node: second/package.json states what avr8js and our own syntax need
+# the oldest sufficient Node: second runs avr8js and its own modules in it, web only esbuild
 node_needed() {
-    sed -n 's/.*"node": ">= *\([0-9.]*\)".*/\1/p' second/package.json
+    sed -n 's/.*"node": ">= *\([0-9.]*\)".*/\1/p' "$node_for/package.json"
 }
 
 has_node_of_age() {
@@ -292,6 +293,11 @@ has_node_of_age() {
 # has_npm FOLDER PACKAGE: exactly what the lock file names
 has_npm() {
     [ -d "build/$1/node_modules/$2" ] && cmp -s "$1/package-lock.json" "build/$1/package-lock.installed"
+}
+
+# esbuild's program is an optional package: npm succeeds where it cannot fetch it
+has_esbuild() {
+    has_npm web esbuild && build/web/node_modules/.bin/esbuild --version > /dev/null 2>&1
 }
 
 npm_out_of_reach='ENOTFOUND|EAI_AGAIN|ECONNREFUSED|ECONNRESET|ETIMEDOUT|ENETUNREACH|EHOSTUNREACH|ERR_SOCKET_TIMEOUT|E403|E407|E50[0-9]'
@@ -349,12 +355,16 @@ fi
 if [ $want_unity = yes ]; then
     install_unity
 fi
-if [ $want_avr8js = yes ] && ! has_node_of_age; then
-    fail "Node $(node --version) is too old, $(node_needed) or later is needed (second/package.json): install a newer nodejs"
+if [ -n "$node_for" ] && ! has_node_of_age; then
+    fail "Node $(node --version) is too old, $(node_needed) or later is needed ($node_for/package.json): install a newer nodejs"
 fi
 if [ $want_avr8js = yes ] && ! has_npm second avr8js; then
     install_npm second avr8js
 fi
-if [ $want_esbuild = yes ] && ! has_npm web esbuild; then
+if [ $want_esbuild = yes ] && ! has_esbuild; then
     install_npm web esbuild
+    if ! has_esbuild; then
+        rm -rf build/web/node_modules
+        fail "npm left out esbuild's program, an optional package: check the network and npm's registry; log in $log"
+    fi
 fi

@@ -23,7 +23,7 @@ class DemoPage extends Page {
     flash.set(bytesOf(byId("image").textContent));
     const seed = Number(new URLSearchParams(location.hash.slice(1)).get("seed") ?? 1);
     this.worker = new Worker(URL.createObjectURL(new Blob([byId("worker").textContent], { type: "text/javascript" })));
-    this.worker.onmessage = ({ data }) => { for (const [name, value] of Object.entries(data)) this.on[name]?.(value, data); };
+    this.worker.onmessage = ({ data }) => { for (const [name, value] of Object.entries(data)) this.on[name]?.(value); };
     this.worker.onerror = (event) => this.stopped(event.message || "the simulation could not be started");
     const world = { outliers: Number(byId("outliers").value) / 100, noise: Number(byId("noise").value) };
     this.tell({ start: { program: flash.buffer, eeprom: this.kept.read(), seed, world } });
@@ -65,7 +65,7 @@ class DemoPage extends Page {
     this.behind = slow ? this.behind + 1 : 0;
     if (this.behind === BEHIND_FOR) {
       this.notice(`This browser falls behind: ${pace.toFixed(2)} times real time instead of ${speed}. The simulation goes on, slower.`);
-    };
+    }
   }
 
   state(kind, words) {
@@ -74,7 +74,6 @@ class DemoPage extends Page {
   }
 
   replays({ name, rows, hz }) {
-    this.rowsOfRecording = rows;
     byId("recording-choice").hidden = false;
     byId("recording-name").textContent = `replays ${name}`;
     this.mark("recording");
@@ -148,6 +147,7 @@ class DemoPage extends Page {
 
   mark(mode) {
     this.mode = mode;
+    for (const each of document.querySelectorAll("#outliers, #noise, [data-press=knock], [data-press=push]")) each.disabled = mode === "recording";
     document.querySelector(`[name=mode][value=${mode}]`).checked = true;
   }
 
@@ -196,9 +196,9 @@ class DemoPage extends Page {
 
   /* The board in the picture: as the truth says, else as the filtered angles say. Seen from the front, y away, x to the right. */
   turnBoard() {
-    const truth = this.measured.at(-1)?.[1] ?? this.newestTruth, { newest } = this;
-    if (truth) this.newestTruth = truth;
-    const [roll, pitch] = this.mode === "phone" || !truth ? [newest?.roll ?? 0, newest?.pitch ?? 0] : truth;
+    const last = this.measured.at(-1), { newest } = this;
+    if (last) this.newestTruth = last[1];
+    const [roll, pitch] = this.newestTruth ?? [newest?.roll ?? 0, newest?.pitch ?? 0];
     this.shown = [limited(roll), limited(pitch)];
     byId("board").style.transform = `rotateX(${(48 - roll).toFixed(1)}deg) rotateY(${pitch.toFixed(1)}deg)`;
   }
@@ -224,7 +224,7 @@ class DemoPage extends Page {
     }
   }
 
-  figures() { return { ...super.figures(), pace: this.pace, mode: this.mode ?? "self" }; }
+  figures() { return { ...super.figures(), pace: this.pace, sensor: this.mode ?? "self" }; }
 }
 
 const tiltPage = new DemoPage();

@@ -1,7 +1,7 @@
 # The demo: one file that runs the firmware in a browser. The worker is packed by esbuild (npm); web/README.md.
 W := $(B)/web
 DEMO := $(B)/demo/tilt-demo.html
-$(W)/worker.js: web/pack.mjs $(wildcard web/worker/*.mjs) $(addprefix second/,adxl345.mjs board.mjs timer.mjs twowire.mjs uno.mjs varied.mjs)
+$(W)/worker.js: web/pack.mjs web/package-lock.json second/package-lock.json $(wildcard web/worker/*.mjs) $(addprefix second/,adxl345.mjs board.mjs timer.mjs twowire.mjs uno.mjs varied.mjs)
 	@node web/pack.mjs $@
 
 $(DEMO): $(U)/firmware.hex $(W)/worker.js web/demo_page.py tools/tilt/whole_page.py $(wildcard web/*.html web/*.css web/*.js) LICENSE
@@ -14,7 +14,12 @@ demo:
 	@$(MAKE) $(DEMO)
 	@echo "demo: open $(DEMO) in a browser"
 
-# for its tests, which are skipped where it cannot be built
-demo_built: $(if $(and $(wildcard $(W)/node_modules/esbuild),$(wildcard $(B)/second/node_modules/avr8js)),$(DEMO))
+# for its tests, which are skipped where it cannot be built: then no older page may stay (esbuild's program: an optional package of npm)
+demo_built: $(if $(and $(wildcard $(W)/node_modules/@esbuild/*/bin),$(wildcard $(B)/second/node_modules/avr8js)),$(DEMO),no_demo)
+no_demo: clean_demo
 
-.PHONY: demo demo_built
+clean: clean_demo
+clean_demo:
+	@rm -rf $(DEMO) $(W)/worker.js
+
+.PHONY: demo demo_built no_demo clean_demo

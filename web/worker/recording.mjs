@@ -9,13 +9,14 @@ const LEAST = -4096, MOST = 4095, WRAP_US = 2 ** 32, MISSING = 2 | 16, TOLERANCE
 function columnsOf(names) {
   const at = Object.fromEntries(Object.entries(COLUMNS).map(([name, any]) => [name, names.findIndex((each) => any.includes(each))]));
   const absent = Object.keys(at).find((name) => at[name] < 0);
-  if (absent) throw new Error(`missing column ${absent} (a header with t_us,x,y,z comes first)`);
+  if (absent) throw new Error(`missing column ${absent} (a header with t_us,x,y,z comes first): tilt import FILE converts other recordings`);
   const truth = TRUTH.map((name) => names.indexOf(name));
   return { ...at, count: names.length, flags: names.indexOf('flags'), truth: truth.includes(-1) ? null : truth };
 }
 
 function whole(text, name, least, most) {
-  if (!/^-?\d{1,16}$/.test(text)) throw new Error(`${name} is not a whole number: '${text.slice(0, 40)}'`);
+  const hint = text.includes('.') ? ': tilt import FILE converts other units' : '';
+  if (!/^-?\d{1,16}$/.test(text)) throw new Error(`${name} is not a whole number: '${text.slice(0, 40)}'${hint}`);
   const value = Number(text);
   if (value < least || value > most) throw new Error(`${name} is outside ${least}..${most}: ${value}`);
   return value;
@@ -68,7 +69,7 @@ const median = (values) => values.sort((a, b) => a - b)[values.length >> 1];
 export function read(text) {
   const reader = new Reader(), lines = text.replace(/^\ufeff/, '').split('\n');
   lines.forEach((line, n) => {
-    if (line.includes('\0')) throw new Error(`line ${n + 1}: a NUL byte: this is no text file`);
+    if (line.includes('\0')) throw new Error(`line ${n + 1}: a NUL byte: no text, or UTF-16, which tilt import FILE converts`);
     try { reader.line(line.trim()); } catch (error) { throw new Error(`line ${n + 1}: ${error.message}`); }
   });
   const { rows, columns } = reader;
@@ -112,7 +113,8 @@ export class Recording {
     this.repeats++;
     const length = this.rows.at(-1).t + this.stepUs;
     if (nowUs - this.began >= length) {
-      this.began += length;
+      this.began += length * Math.floor((nowUs - this.began) / length);
+      this.at = -1;
       this.step();
     }
     while (this.at + 1 < this.rows.length && this.rows[this.at + 1].t <= nowUs - this.began) this.step();

@@ -125,10 +125,8 @@ class Simulator {
     this.keep();
   }
 
-  // the EEPROM's content, once nothing has been written for a while
   keep() {
-    if (!this.cells.changed && this.unkept) postMessage({ eeprom: this.cells.memory });
-    this.unkept = this.cells.changed;
+    if (this.cells.changed) postMessage({ eeprom: this.cells.memory });
     this.cells.changed = false;
   }
 

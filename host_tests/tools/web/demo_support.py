@@ -7,7 +7,6 @@ import tempfile
 
 from browser import ABSENT
 from live_support import Case
-from tilt.whole_page import WEB
 
 PAGE = pathlib.Path("build/demo/tilt-demo.html")
 SIMRUN, FIRMWARE = pathlib.Path("build/sim/simrun"), pathlib.Path("build/uno/firmware.elf")
@@ -75,4 +74,4 @@ def simrun(samples):
         return rows_of(out.read_text(encoding="latin-1"))
 
 
-__all__ = ["DemoCase", "FIRMWARE", "PAGE", "SIMRUN", "WEB", "WHY_NOT", "rows_of", "simrun"]
+__all__ = ["DemoCase", "FIRMWARE", "PAGE", "SIMRUN", "WHY_NOT", "rows_of", "simrun"]

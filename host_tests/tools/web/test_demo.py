@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Tests of the demo in a headless Chromium: its rows are simrun's for the same samples, of the virtual sensor and of a recording; faults by
-button and what comes after them; what `save` writes stays. Run from the repository root with build/venv/bin/python."""
+"""Tests of the demo in a headless Chromium: its rows and their times are simrun's for the same samples, of the virtual sensor and of a recording;
+faults by button and what comes after them; what `save` writes stays. Run from the repository root with build/venv/bin/python."""
 import pathlib
 import sys
 import unittest
@@ -8,12 +8,22 @@ import unittest
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import ROBUST  # noqa: E402
-from demo_support import FIRMWARE, SIMRUN, WHY_NOT, DemoCase, rows_of, simrun  # noqa: E402
+from demo_support import FIRMWARE, PAGE, SIMRUN, WHY_NOT, DemoCase, rows_of, simrun  # noqa: E402
 
 SEED = 7
 ROWS = 2000
+STAMP_SPREAD_US = 20
 COASTED_OR_FAULT = 2 | 16
 STREAMS = pathlib.Path("sim/streams")
+# order: the reports of the worker's pace and of the EEPROM's content, with `saved` among them
+SAVES = """
+window.order = [];
+tiltPage.worker.addEventListener('message', ({ data }) => {
+  if (data.text?.includes('# saved')) order.push('saved');
+  order.push(...['status', 'eeprom'].filter((name) => name in data));
+});
+tiltPage.send('save');
+"""
 FAULTS = {"sda": 8, "unplug": 1, "int1": 5}
 
 
@@ -22,8 +32,19 @@ def apart(rows, others):
     return next(((one, other) for one, other in zip(rows, others) if one[1:] != other[1:]), None)
 
 
+def stamp_spread(rows, others):
+    """Microseconds by which t_us wanders about a constant difference between rows and their counterparts."""
+    apart_us = [one[0] - other[0] for one, other in zip(rows, others)]
+    return max(apart_us) - min(apart_us)
+
+
 @unittest.skipIf(WHY_NOT, WHY_NOT)
 class TestRows(DemoCase):
+    def hold(self, rows, others):
+        """The rows are their counterparts'; the time from row to row is, within STAMP_SPREAD_US."""
+        self.assertIsNone(apart(rows, others))
+        self.assertLess(stamp_spread(rows, others), STAMP_SPREAD_US)
+
     def of_the_page(self, page, least):
         self.speed(page, 0)
         page.until(f"tiltPage.figures().rows >= {least}")
@@ -37,7 +58,7 @@ class TestRows(DemoCase):
         sim_rows, sim_words = simrun([(10000 * n, *lsb) for n, lsb in enumerate(samples)])
         print(f"seed {SEED}: {min(len(rows), len(sim_rows))} rows against simrun's")
         self.assertGreaterEqual(min(len(rows), len(sim_rows)), ROWS - 5)
-        self.assertIsNone(apart(rows, sim_rows))
+        self.hold(rows, sim_rows)
         self.assertIsNotNone(apart(rows, sim_rows[1:]))  # the twin: a row late
         self.assertGreater(sum(row[9] & 1 for row in rows), ROWS // 10)  # 15 % outliers an axis: many rows are gated
         banner = words.index("t_us,x_lsb,y_lsb,z_lsb,x_mg,y_mg,z_mg,roll_cdeg,pitch_cdeg,flags")
@@ -49,7 +70,7 @@ class TestRows(DemoCase):
         self.assertNotEqual(first, other)
 
     def address(self, seed):
-        return f"{pathlib.Path('build/demo/tilt-demo.html').resolve().as_uri()}#seed={seed}"
+        return f"{PAGE.resolve().as_uri()}#seed={seed}"
 
     def replayed(self, name):
         """The page's rows of a stream from its first row and a cold start on, and simrun's."""
@@ -68,7 +89,7 @@ class TestRows(DemoCase):
     def test_recording_is_replayed_with_its_truth(self):
         page, rows, sim_rows = self.replayed("outliers-15pct.csv")
         self.assertGreater(min(len(rows), len(sim_rows)), 900)
-        self.assertIsNone(apart(rows, sim_rows))
+        self.hold(rows, sim_rows)
         off = page.value("""(() => { const { history } = tiltPage, mask = history.size - 1; let raw = 0, filtered = 0, count = 0;
           for (let k = history.count - 900; k < history.count; k++) {
             const truth = history.trueRoll[k & mask];
@@ -81,13 +102,13 @@ class TestRows(DemoCase):
     def test_recording_at_another_rate(self):
         _, rows, sim_rows = self.replayed("tilt-400hz.csv")
         self.assertGreater(min(len(rows), len(sim_rows)), 990)  # it lasts 10 s; then the page begins it again, and simrun ends
-        self.assertIsNone(apart(rows[:990], sim_rows))
+        self.hold(rows[:990], sim_rows)
 
     def test_recording_with_gaps(self):
         _, rows, sim_rows = self.replayed("gaps-jitter.csv")
         end = next(n for n, row in enumerate(sim_rows) if row[9] & COASTED_OR_FAULT)  # what comes first after a gap depends on microseconds
         self.assertGreater(end, 50)
-        self.assertIsNone(apart(rows[:end], sim_rows[:end]))
+        self.hold(rows[:end], sim_rows[:end])
         self.assertTrue(rows[end][9] & COASTED_OR_FAULT)
 
 
@@ -137,8 +158,10 @@ class TestHands(DemoCase):
         self.assertEqual(page.figures()["filters"], FIRMWARE.with_name("filters.txt").read_text(encoding="ascii").split())
         page.value(f"document.querySelector('input[value={ROBUST}]').click()")
         page.until(f"tiltPage.figures().filter === '{ROBUST}'")
-        page.value("tiltPage.send('save')")
-        page.until("heard.text.includes('# saved') && localStorage.length === 1")
+        page.value(SAVES)
+        page.until("order.includes('saved') && order.slice(order.indexOf('saved')).filter((each) => each === 'status').length === 2")
+        order = page.value("order")
+        self.assertIn("eeprom", order[:order.index("status", order.index("status", order.index("saved")) + 1)])  # before the second report
         again = self.demo()
         again.until(f"heard.text.includes('# settings: as saved') && tiltPage.figures().filter === '{ROBUST}'")
 
@@ -160,13 +183,29 @@ class TestHands(DemoCase):
         for kind, by in (("mousePressed", 0), ("mouseMoved", 25), ("mouseMoved", 50), ("mouseReleased", 50)):
             held = 0 if kind == "mouseReleased" else 1
             page.call("Input.dispatchMouseEvent", type=kind, x=box[0] + by, y=box[1], button="left", buttons=held, clickCount=1)
-        self.assertEqual(page.figures()["mode"], "hand")
+        self.assertEqual(page.figures()["sensor"], "hand")
         page.value("pad.focus()")
         page.press("Home")
         for _ in range(4):
             page.press("ArrowRight")
         page.until("Math.abs(tiltPage.newest.truePitch - 20) < 0.1 && Math.abs(tiltPage.newest.pitch - 20) < 2")
         page.until("Math.abs(tiltPage.newest.trueRoll) < 0.1")
+
+    def test_the_board_follows_a_recording_without_truth(self):
+        page = self.demo()
+        self.drop(page, "tilted.csv", "t_us,x,y,z\n" + "".join(f"{10000 * n},{n % 3},{187 + n % 2},181\n" for n in range(500)))
+        page.until("Math.abs(tiltPage.newest.roll - 45) < 2")
+        page.until("Math.abs(tiltPage.shown[0] - tiltPage.newest.roll) < 0.1 && Math.abs(tiltPage.shown[1]) < 2")
+
+    def test_what_does_nothing_to_a_recording_is_disabled(self):
+        page = self.demo()
+        disabled = "[...document.querySelectorAll('.world :disabled')].map((each) => each.id || each.dataset.press)"
+        self.assertEqual(page.value(disabled), [])
+        self.drop(page, "level.csv", "t_us,x,y,z\n0,0,1,256\n10000,1,0,256\n")
+        page.until("tiltPage.figures().sensor === 'recording'")
+        self.assertEqual(page.value(disabled), ["outliers", "noise", "knock", "push"])
+        page.value("document.querySelector('[value=self]').click()")
+        self.assertEqual(page.value(disabled), [])
 
 
 if __name__ == "__main__":

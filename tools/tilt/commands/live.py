@@ -2,7 +2,7 @@
 
 The page is served to this machine only, at the printed address. If the board is unplugged, the page waits for it. Ctrl-C ends.
 PORT is a serial port (/dev/ttyACM0, COM3) or the pseudo terminal that build/sim/simrun --pty prints. The page also works without
-this command: open web/live.html in Chrome or Edge, which read the port by WebSerial.
+this command: open live.html from the folder web/ in Chrome or Edge, which read the port by WebSerial.
 
 Status: 0 ended by Ctrl-C or SIGTERM, 1 the recording ended early, 2 the port, the file or the address cannot be used.
 """
