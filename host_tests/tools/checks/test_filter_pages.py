@@ -192,7 +192,7 @@ def every_test_that_is_named_exists():
     count = 0
     for name in WORDS:
         for named in re.findall(r"`([a-z0-9]+(?:_[a-z0-9]+){3,})`", text_of(name)):
-            assert f"void {named}(" in sources or f"def {named}()" in sources, (name, named)
+            assert f"TEST({named})" in sources or f"def {named}()" in sources, (name, named)
             count += 1
     assert count >= 14, count
     source = pathlib.Path("host_tests/tilt/test_tilt_partial.c").read_text(encoding="utf-8")
