@@ -1,10 +1,10 @@
 #include "support/test.h"
 
-static test_t *first;
+static test_t *first_test;
 
 void test_add(test_t *test)
 {
-    test_t **at = &first;
+    test_t **at = &first_test;
     while (*at != NULL && (*at)->line < test->line) {
         at = &(*at)->next;
     }
@@ -14,8 +14,8 @@ void test_add(test_t *test)
 
 int test_all(void)
 {
-    UnityBegin((first != NULL) ? first->file : "no test");
-    for (const test_t *test = first; test != NULL; test = test->next) {
+    UnityBegin((first_test != NULL) ? first_test->file : "no test");
+    for (const test_t *test = first_test; test != NULL; test = test->next) {
         TEST_RUN(test->run, test->name, test->line);
     }
     return UnityEnd();

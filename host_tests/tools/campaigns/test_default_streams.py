@@ -80,7 +80,7 @@ def a_folder_of_recordings_that_cannot_be_read_is_named():
                 (folder / part / "index.csv").unlink(missing_ok=True)
                 if text is not None:
                     (folder / part / "index.csv").write_text(text, encoding="utf-8")
-            refused(Fault, lambda: streams.recording_jobs(streams.recordings_index()), words)
+            assert "\n" not in refused(Fault, lambda: streams.recording_jobs(streams.recordings_index()), words)
 
 
 if __name__ == "__main__":
