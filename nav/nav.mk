@@ -33,7 +33,7 @@ $(eval $(call NAV_IMAGE,nav9,9))
 
 NAVIMG_HOST := $(filter-out nav/image/main.c hal/avr/%,$(NAVIMG_SRC))
 # with a line of its own in place of the host's HAL
-$(H)/test_nav_link: nav/tests/test_nav_link.c nav/tests/nav_line.c $(NAVIMG_HOST) host_tests/support/random.c $(H)/unity.o nav/tests/nav_line.h $(wildcard hal/*.h nav/image/*.h nav/lib/*.h) $(MACHINE_H)
+$(H)/test_nav_link: nav/tests/test_nav_link.c nav/tests/nav_line.c $(NAVIMG_HOST) host_tests/support/random.c host_tests/support/test.c $(H)/unity.o nav/tests/nav_line.h $(wildcard hal/*.h nav/image/*.h nav/lib/*.h) $(MACHINE_H)
 	@mkdir -p $(@D)
 	@$(HOST_CC) $(HOST_FLAGS) $(NAV_RINGS) $(NAVIMG_INC) $(WARNINGS) $(SANITIZE) $(filter %.c %.o,$^) -lm -o $@
 

@@ -64,7 +64,7 @@ class Link(Host):
         self.variant, self.folder = "navlink", self.folder.with_name("navlink")
         self.objects = self.objects.named("navlink", self.command)
         self.product = [*sources("nav/image", ["nav/image/main.c"]), *sources("nav/lib")]
-        self.supports = ["nav/tests/nav_line.c", "host_tests/support/random.c"]
+        self.supports = ["nav/tests/nav_line.c", "host_tests/support/random.c", "host_tests/support/test.c"]
         self.tests = ["test_nav_link"]
 
     def command(self, source):

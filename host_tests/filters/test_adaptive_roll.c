@@ -5,7 +5,7 @@
 #include "adaptive.h"
 #include "support/filters.h"
 #include "support/roll.h"
-#include "unity.h"
+#include "support/test_law.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,8 +22,6 @@ void setUp(void)
     random_state = 20260u;
 }
 
-void tearDown(void) {}
-
 static filter_config_t configured(bool guarded, bool identify)
 {
     filter_config_t config = filter_defaults(&filter_law_adaptive, 100);
@@ -39,8 +37,7 @@ static roll_windows_t mean_square(const filter_config_t *config, roll_profile_t 
 {
     roll_windows_t sum = { 0.0, 0.0, 0.0 };
     for (int run = 0; run < RUNS; run++) {
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, config));
+        filter_t f = made(&filter_law_adaptive, config);
         for (int k = 0; k < ROLL_SAMPLES; k++) {
             double truth = roll_truth_deg(profile, 0.1 * k);
             double x = filter_update(&f, roll_measured_lsb(&random_state, truth, share)) / 65536.0 /
@@ -57,7 +54,7 @@ static roll_windows_t mean_square(const filter_config_t *config, roll_profile_t 
     return mean;
 }
 
-static void unguarded_is_within_the_issues_table(void)
+TEST(unguarded_is_within_the_issues_table)
 {
     static const roll_windows_t limits[STILL] = {
         { 0.16, 0.28, 0.18 }, { 0.16, 0.44, 0.17 }, { 0.16, 0.50, 0.17 }, { 0.16, 0.64, 0.19 }
@@ -73,7 +70,7 @@ static void unguarded_is_within_the_issues_table(void)
     }
 }
 
-static void the_guard_costs_a_quarter_at_most_on_clean_samples(void)
+TEST(the_guard_costs_a_quarter_at_most_on_clean_samples)
 {
     filter_config_t guarded = configured(true, true);
     filter_config_t unguarded = configured(false, true);
@@ -85,7 +82,7 @@ static void the_guard_costs_a_quarter_at_most_on_clean_samples(void)
     }
 }
 
-static void one_outlier_in_twenty_is_borne(void)
+TEST(one_outlier_in_twenty_is_borne)
 {
     static const double limits[SINE30] = { 0.40, 0.70, 1.0 };
     filter_config_t config = configured(true, true);
@@ -115,8 +112,7 @@ static void identified_with_bad_read(bool guarded, double sigma_lsb, int index, 
     double to_roll = sigma_lsb / (sqrt(ROLL_R_DEG2) * ROLL_LSB_PER_DEGREE);
     *mean = 0.0;
     for (int start = 0; start < STARTS; start++) {
-        filter_t f;
-        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_adaptive, &config));
+        filter_t f = made(&filter_law_adaptive, &config);
         for (int k = 0; k < START_SAMPLES; k++) {
             double noise_lsb = to_roll * roll_measured_lsb(&random_state, 0.0, 0.0);
             (void)filter_update(&f, (int16_t)(k == index ? bad_lsb : lrint(LEVEL_LSB + noise_lsb)));
@@ -151,7 +147,7 @@ static void assert_one_bad_read_is_borne(bool guarded, double sigma_lsb)
 }
 
 /* Wherever it is among the first 13 samples; the R that the filter begins with is up to 480 times too small. */
-static void a_bad_read_of_the_start_is_given_up(void)
+TEST(a_bad_read_of_the_start_is_given_up)
 {
     for (int guarded = 0; guarded < 2; guarded++) {
         assert_one_bad_read_is_borne(guarded != 0, 12.0);
@@ -227,7 +223,7 @@ static double mean_of_cells(const fixed_t *fixed, const roll_windows_t *adaptive
 }
 
 /* a1 = -0.3..0 by 0.1 with b0 = 0.1..0.95 by 0.05 where that is stable, lambda = 10^-4..10 by half decades. */
-static void no_fixed_tuning_has_a_smaller_mean(void)
+TEST(no_fixed_tuning_has_a_smaller_mean)
 {
     filter_config_t config = configured(false, true);
     roll_windows_t adaptive[STILL];
@@ -278,11 +274,5 @@ int main(int argc, char **argv)
         print_curve();
         return 0;
     }
-    UNITY_BEGIN();
-    RUN_TEST(unguarded_is_within_the_issues_table);
-    RUN_TEST(the_guard_costs_a_quarter_at_most_on_clean_samples);
-    RUN_TEST(one_outlier_in_twenty_is_borne);
-    RUN_TEST(a_bad_read_of_the_start_is_given_up);
-    RUN_TEST(no_fixed_tuning_has_a_smaller_mean);
-    return UNITY_END();
+    return test_all();
 }

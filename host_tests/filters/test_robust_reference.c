@@ -11,6 +11,9 @@
 #define GOLDEN "../shared/reference/golden_mls.csv"
 #define GOLDEN_FILTERS 9
 #define FIRST_COLUMN 4
+#define FIRST_REACQUIRING 7 /* of the filters */
+#define REACQUIRE 5
+#define AGREE_DEG 0.37
 
 /* Order of the columns: four per filter. */
 static robust_reference_t golden_filter(int column)
@@ -19,9 +22,9 @@ static robust_reference_t golden_filter(int column)
                                                        "af", "sprf", "sprf", "soft" };
     robust_reference_t f;
     robust_reference_table1(&f, kinds[column]);
-    if (column >= 7) {
-        f.reacquire = 5;
-        f.agree = 0.37;
+    if (column >= FIRST_REACQUIRING) {
+        f.reacquire = REACQUIRE;
+        f.agree = AGREE_DEG;
     }
     return f;
 }
@@ -33,10 +36,10 @@ enum { IN_FILTERS = sizeof in_filters / sizeof in_filters[0] };
 static reference_filter_t golden_reference(int column)
 {
     reference_filter_t f = reference_table_1(column == 1 ? 60.85 : 1.0);
-    if (column >= 7) {
+    if (column >= FIRST_REACQUIRING) {
         f.gate2 = 9.0;
-        f.reacquire = 5;
-        f.agree = 0.37;
+        f.reacquire = REACQUIRE;
+        f.agree = AGREE_DEG;
     }
     f.soft2 = (column == 8) ? 4.0 : 0.0;
     return f;

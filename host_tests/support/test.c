@@ -16,6 +16,7 @@ int test_all(void)
 {
     UnityBegin((first_test != NULL) ? first_test->file : "no test");
     for (const test_t *test = first_test; test != NULL; test = test->next) {
+        Unity.TestFile = test->file;
         TEST_RUN(test->run, test->name, test->line);
     }
     return UnityEnd();

@@ -7,7 +7,7 @@
 #include "nav_line.h"
 #include "nav_link.h"
 #include "support/random.h"
-#include "unity.h"
+#include "support/test.h"
 
 enum { REALS = 30, STATE_LENGTH = 57 };
 
@@ -49,10 +49,8 @@ void setUp(void)
     nav_line_begin();
 }
 
-void tearDown(void) {}
-
 /* The check value of CRC-16/CCITT with this start, in every catalogue of CRCs. */
-static void test_crc_has_its_check_value(void)
+TEST(test_crc_has_its_check_value)
 {
     uint16_t crc = 0xFFFF;
     for (const char *at = "123456789"; *at != '\0'; at++) {
@@ -61,7 +59,7 @@ static void test_crc_has_its_check_value(void)
     TEST_ASSERT_EQUAL_HEX16(0x29B1, crc);
 }
 
-static void test_frames_are_those_of_the_definition(void)
+TEST(test_frames_are_those_of_the_definition)
 {
     random_seed(&dice, 11);
     for (int round = 0; round < 2000; round++) {
@@ -85,7 +83,7 @@ static void test_frames_are_those_of_the_definition(void)
     }
 }
 
-static void test_reader_takes_what_was_framed_and_nothing_else(void)
+TEST(test_reader_takes_what_was_framed_and_nothing_else)
 {
     frame_reader_t reader;
     frame_reader_init(&reader);
@@ -117,7 +115,7 @@ static void test_reader_takes_what_was_framed_and_nothing_else(void)
     }
 }
 
-static void test_reader_finds_its_place_behind_anything(void)
+TEST(test_reader_finds_its_place_behind_anything)
 {
     frame_reader_t reader;
     frame_reader_init(&reader);
@@ -139,7 +137,7 @@ static void test_reader_finds_its_place_behind_anything(void)
     }
 }
 
-static void test_greets_with_its_window_and_the_reset(void)
+TEST(test_greets_with_its_window_and_the_reset)
 {
     TEST_ASSERT_EQUAL(1, nav_line_said_count);
     const uint8_t hello[] = { 'h', LINK_VERSION, NAV_STATES, 127, 0, HAL_RESET_WATCHDOG };
@@ -147,7 +145,7 @@ static void test_greets_with_its_window_and_the_reset(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(hello, nav_line_said[0].bytes, sizeof hello);
 }
 
-static void test_nothing_is_believed_before_the_start(void)
+TEST(test_nothing_is_believed_before_the_start)
 {
     TEST_ASSERT_EQUAL(LINK_NOT_STARTED, put_imu(0, 0, true));
     TEST_ASSERT_EQUAL(1, nav_line_said_count);
@@ -156,7 +154,7 @@ static void test_nothing_is_believed_before_the_start(void)
     TEST_ASSERT_EQUAL(NAV_TAKEN, put_imu(10000, 0, false));
 }
 
-static void test_a_start_wants_each_parameter_in_its_range(void)
+TEST(test_a_start_wants_each_parameter_in_its_range)
 {
     uint32_t period_us = 10000;
     TEST_ASSERT_EQUAL(LINK_START_REFUSED, nav_line_ask(RECORD_START, &period_us, 4));
@@ -182,7 +180,7 @@ static void test_a_start_wants_each_parameter_in_its_range(void)
 }
 
 /* A turn of 0.5 rad/s about x for one period: the quaternion's x is the sine of half of 5 mrad. */
-static void test_the_state_is_that_of_the_filter(void)
+TEST(test_the_state_is_that_of_the_filter)
 {
     TEST_ASSERT_EQUAL(NAV_TAKEN, start_flight());
     TEST_ASSERT_EQUAL(NAV_TAKEN, put_imu(0x01020304, 0.5F, true));
@@ -201,7 +199,7 @@ static void test_the_state_is_that_of_the_filter(void)
 }
 
 /* A refused record leaves the state where it was, and its time with it. */
-static void test_the_state_has_the_time_of_the_last_record_taken(void)
+TEST(test_the_state_has_the_time_of_the_last_record_taken)
 {
     uint32_t t_us;
     TEST_ASSERT_EQUAL(NAV_TAKEN, start_flight());
@@ -212,7 +210,7 @@ static void test_the_state_has_the_time_of_the_last_record_taken(void)
     TEST_ASSERT_EQUAL_UINT32(10000, t_us);
 }
 
-static void test_every_length_but_the_right_one_is_refused(void)
+TEST(test_every_length_but_the_right_one_is_refused)
 {
     static const struct {
         uint8_t type;
@@ -255,7 +253,7 @@ static unsigned count_at(size_t place)
     return nav_line_said[0].bytes[1 + 2 * place] | (unsigned)nav_line_said[0].bytes[2 + 2 * place] << 8;
 }
 
-static void test_order_damage_and_loss_are_counted(void)
+TEST(test_order_damage_and_loss_are_counted)
 {
     TEST_ASSERT_EQUAL(NAV_TAKEN, start_flight());
     TEST_ASSERT_EQUAL(NAV_TAKEN, put_imu(10000, 0, false));
@@ -285,7 +283,7 @@ static void test_order_damage_and_loss_are_counted(void)
 }
 
 /* Counts that are full stay full: 65535, of records of no type and of numbers that never came. */
-static void test_counts_stay_at_their_end(void)
+TEST(test_counts_stay_at_their_end)
 {
     TEST_ASSERT_EQUAL(NAV_TAKEN, start_flight());
     for (long round = 0; round < 65535L + 10L; round++) {
@@ -304,7 +302,7 @@ static void test_counts_stay_at_their_end(void)
     TEST_ASSERT_EQUAL(65535U, count_at(MISSING));
 }
 
-static void test_a_greeting_on_demand_begins_the_order_anew(void)
+TEST(test_a_greeting_on_demand_begins_the_order_anew)
 {
     TEST_ASSERT_EQUAL(NAV_TAKEN, start_flight());
     nav_line_sequence = 200;
@@ -316,7 +314,7 @@ static void test_a_greeting_on_demand_begins_the_order_anew(void)
 }
 
 /* What a record may cause has room before it is taken: nothing goes out by halves. */
-static void test_waits_for_room_to_answer(void)
+TEST(test_waits_for_room_to_answer)
 {
     TEST_ASSERT_EQUAL(NAV_TAKEN, start_flight());
     nav_line_room = STATE_LENGTH + 4 + 7 + 4 - 1;
@@ -337,7 +335,7 @@ static uint8_t put_reals(uint8_t type, uint32_t t_us, const float *values, size_
 }
 
 /* A filter of the same parameters, spoken to without a line: what it answers and counts is what the line must say. */
-static void test_each_sensor_reaches_the_filter(void)
+TEST(test_each_sensor_reaches_the_filter)
 {
     static nav_t direct;
     static const float velocity_position[6] = { 6.5F, 0.25F, -0.125F, 3, 95, -2 };
@@ -363,7 +361,7 @@ static void test_each_sensor_reaches_the_filter(void)
     }
 }
 
-static void test_variances_begin_as_told(void)
+TEST(test_variances_begin_as_told)
 {
     TEST_ASSERT_EQUAL(NAV_TAKEN, start_flight());
     TEST_ASSERT_EQUAL(NAV_TAKEN, nav_line_ask(RECORD_VARIANCES, NULL, 0));
@@ -374,26 +372,4 @@ static void test_variances_begin_as_told(void)
     TEST_ASSERT_FLOAT_WITHIN(1e-2F, 57.3F * 57.3F, variance[0]);
     TEST_ASSERT_FLOAT_WITHIN(1e-6F, 1.44F, variance[3]);
     TEST_ASSERT_FLOAT_WITHIN(1e-9F, 4e-4F, variance[6]);
-}
-
-int main(void)
-{
-    UNITY_BEGIN();
-    RUN_TEST(test_crc_has_its_check_value);
-    RUN_TEST(test_frames_are_those_of_the_definition);
-    RUN_TEST(test_reader_takes_what_was_framed_and_nothing_else);
-    RUN_TEST(test_reader_finds_its_place_behind_anything);
-    RUN_TEST(test_greets_with_its_window_and_the_reset);
-    RUN_TEST(test_nothing_is_believed_before_the_start);
-    RUN_TEST(test_a_start_wants_each_parameter_in_its_range);
-    RUN_TEST(test_the_state_is_that_of_the_filter);
-    RUN_TEST(test_the_state_has_the_time_of_the_last_record_taken);
-    RUN_TEST(test_every_length_but_the_right_one_is_refused);
-    RUN_TEST(test_order_damage_and_loss_are_counted);
-    RUN_TEST(test_counts_stay_at_their_end);
-    RUN_TEST(test_a_greeting_on_demand_begins_the_order_anew);
-    RUN_TEST(test_waits_for_room_to_answer);
-    RUN_TEST(test_each_sensor_reaches_the_filter);
-    RUN_TEST(test_variances_begin_as_told);
-    return UNITY_END();
 }
