@@ -139,6 +139,7 @@ class Result:
     since_good_ms: float  # from the last good row to the end of the run; None: there was none
     command: str
     ending: Ending = None  # of a run with a command
+    missing: tuple = ()  # lines that it had to print
 
     def failures(self):
         """Each as a few words."""
@@ -146,6 +147,7 @@ class Result:
         stops = self.kinds[0].stops()
         said += ["no good row any more"] if self.injected and not self.recovered and not self.hang and not stops else []
         said += self.ending.failures(self.kinds[0].command, self.kinds[0].once) if self.ending and self.injected and not self.hang else []
+        said += [f"no line {line!r}" for line in self.missing] if not self.hang else []
         return said + self.beyond_limits() + (self.stream_ends() if self.recovered and not stops else [])
 
     def beyond_limits(self):

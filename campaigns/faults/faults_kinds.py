@@ -35,6 +35,7 @@ class Kind:
     said_ms: float = LINE_MS  # what the firmware says at once ahead of a row, as long as it takes
     gated_rows: int = GATED_ROWS  # that a filter may refuse, one after another
     command: Command = None  # that is carried out while the fault comes
+    prints: str = ""  # how a line begins that its run has to print
     once: bool = False  # of such a kind: it strikes a single transfer
     taken: bool = False  # it gives a value near those before it, which a filter takes; then it refuses true ones until it begins anew
 
@@ -106,7 +107,7 @@ TYPED = [
           said_ms=20),  # two lines ahead of a row
     # one on each side, none of which loses a sample: that would end the measurement
     typed("typed: cal6 to its end", ("torn", "@7000 nack", "@14000 arb", "@21000 nackdata", "@28000 buserr", "@35000 glitch"), "cal6",
-          stream=SIX_SIDES, more_ms=42000, said_ms=80),
+          stream=SIX_SIDES, more_ms=42000, said_ms=80, prints="# cal6: residual "),
     typed("upside down", "nack", stream="sim/streams/through-roll-180.csv"), typed("upright", "nackdata", stream="sim/streams/through-pitch-90.csv"),
     # what these streams do to one axis, the filter sees on the others at another time
     *(typed(f"outliers, {name}", "nack", stream="sim/streams/steps-outliers.csv", filter_name=name, gated_rows=3 * GATED_ROWS)

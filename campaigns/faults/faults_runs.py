@@ -109,14 +109,29 @@ def noise_at(rate, memory={}):
         return REST
     with LOCK:
         if rate not in memory:
-            memory[rate] = pathlib.Path(STREAMS.name) / f"rest-{rate}.csv"
-            source = random.Random(rate)
-            with open(memory[rate], "w", encoding="ascii") as file:
-                file.write("t_us,x,y,z\n")
-                for n in range(4 * rate):
-                    x, y, z = (round(source.gauss(mean, 2)) for mean in (31, 52, 249))
-                    file.write(f"{round(1e6 * n / rate)},{x},{y},{z}\n")
+            memory[rate] = written(f"rest-{rate}", rate, 2, itertools.repeat((31, 52, 249), 4 * rate))
     return memory[rate]
+
+
+def six_sides(memory=[]):
+    """A stream for cal6: each side up for six seconds, then turned to the next one in one."""
+    with LOCK:
+        if not memory:
+            turned = ((side, max(0, n - 600) / 100) for side in range(len(SIDES)) for n in range(700))
+            means = (tuple(256 * (a * (1 - t) + b * t) for a, b in zip(SIDES[side], SIDES[(side + 1) % len(SIDES)])) for side, t in turned)
+            memory.append(written("six-sides", 100, 1, means))
+    return memory[0]
+
+
+def written(name, rate, sigma, means):
+    """A stream of these readings at a rate, with white noise."""
+    path, source = pathlib.Path(STREAMS.name) / f"{name}.csv", random.Random(name)
+    with open(path, "w", encoding="ascii") as file:
+        file.write("t_us,x,y,z\n")
+        for n, reading in enumerate(means):
+            x, y, z = (round(source.gauss(mean, sigma)) for mean in reading)
+            file.write(f"{round(1e6 * n / rate)},{x},{y},{z}\n")
+    return path
 
 
 # --- phases -----------------------------------------------------------------------------------------------------------
@@ -163,22 +178,6 @@ def moments(kind, count, seed):
 
 # --- one run ----------------------------------------------------------------------------------------------------------
 
-def six_sides(memory=[]):
-    """A stream for cal6: each side up for six seconds, then turned to the next one in one."""
-    with LOCK:
-        if not memory:
-            memory.append(pathlib.Path(STREAMS.name) / "six-sides.csv")
-            source = random.Random(6)
-            with open(memory[0], "w", encoding="ascii") as file:
-                file.write("t_us,x,y,z\n")
-                for n in range(700 * len(SIDES)):
-                    side, turned = n // 700, max(0, n % 700 - 600) / 100
-                    both = zip(SIDES[side], SIDES[(side + 1) % len(SIDES)])
-                    x, y, z = (round(256 * (a * (1 - turned) + b * turned) + source.gauss(0, 1)) for a, b in both)
-                    file.write(f"{10000 * n},{x},{y},{z}\n")
-    return memory[0]
-
-
 def ends_of(stats):
     """(end in ms, ms from it to the first good row or None) of every fault that came."""
     for n in itertools.count(1):
@@ -215,6 +214,8 @@ def attempt(firmware, filter_name, kinds, whens, profile=None):
         done = simulate(firmware, filter_name, *options, rate=max(kind.rate for kind in kinds), profile=profile, max_ms=max_ms)
         result = judged(filter_name, kinds, whens, max_ms, command, *done)
         result.ending = ending(kinds[0].command, done[2]) if kinds[0].command else None
+        printed = "\n" + (folder() / "out.csv").read_text(encoding="ascii", errors="replace")
+        result.missing = tuple(kind.prints for kind in kinds if f"\n{kind.prints}" not in printed)
         return result
     except Exception as problem:
         return Result(kinds, " + ".join(whens), filter_name, f"the run died: {type(problem).__name__}: {str(problem)[:200]}", injected=False,

@@ -253,7 +253,7 @@ static bool read_lines(reader_t *r, char *text, size_t length)
         char *newline = memchr(at, '\n', (size_t)(end - at));
         char *line_end = newline == NULL ? end : newline;
         if (memchr(at, '\0', (size_t)(line_end - at)) != NULL) {
-            return fail(r, "a NUL byte: tilt import FILE reads UTF-16");
+            return fail(r, "a NUL byte: no text, or UTF-16, which tilt import FILE converts");
         }
         *line_end = '\0';
         if (!read_line(r, at)) {

@@ -53,6 +53,14 @@ def a_pass_of_the_main_loop_has_4_ms():
 
 
 @test
+def a_line_that_has_to_come_is_missed():
+    assert result("typed: cal6 to its end", missing=("# cal6: residual ",)).failures() == ["no line '# cal6: residual '"]
+    asks = dataclasses.replace(ALL["nack"], typed=("1100:every",))
+    for prints, missing in (("# every ", ()), ("# ever ", ("# ever ",)), ("every ", ("every ",))):
+        assert faults_runs.attempt(FW, DEFAULT, (dataclasses.replace(asks, prints=prints),), ("1000ms",)).missing == missing, prints
+
+
+@test
 def resets_are_those_asked_for_and_no_fewer():
     for name, due in (("reset", 1), ("starve", 1), ("starve again", 4)):
         for resets in (due - 1, due + 1):
