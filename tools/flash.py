@@ -35,8 +35,8 @@ def typed(target, **words):
     words = {name.upper(): value for name, value in words.items()}
     kept = {name: given[name] for name in ("BOARD", "FILTERS", "STATES", "BAUD") if name in given and name not in words}
     kept = {name: shlex.quote(value) for name, value in kept.items()}
-    order = ("BOARD", "FILTERS", "STATES", "BAUD", "PORT")
-    return " ".join(["make", target, *(f"{name}={value}" for name, value in sorted({**kept, **words}.items(), key=lambda each: order.index(each[0])))])
+    words = {name: {**kept, **words}[name] for name in ("BOARD", "FILTERS", "STATES", "BAUD", "PORT") if name in {**kept, **words}}
+    return " ".join(["make", target, *(f"{name}={value}" for name, value in words.items())])
 
 
 def port_to_take(given, target, say=True):

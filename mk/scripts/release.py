@@ -59,7 +59,8 @@ def notes(hexes):
         held = " ".join(images.HOLDS.get(name.split("-")[0], ["navigation, 12 states"]))
         rows.append(f"| `tilt-uno-{VERSION}-{name}.hex` | {held} | {size(path):,} | {', '.join(boards_for(name, path))} |")
     table = "\n".join(["| image | filters | bytes | boards |", "|---|---|---:|---|", *rows])
-    return f"# tilt-uno {VERSION}\n\nHow to install each file: docs/install.md. `sha256sum -c SHA256SUMS` checks all of them.\n\n{table}\n\n## Changes\n{changes()[1]}"
+    how = "How to install each file: docs/install.md. `sha256sum -c SHA256SUMS` checks all of them."
+    return f"# tilt-uno {VERSION}\n\n{how}\n\n{table}\n\n## Changes\n{changes()[1]}"
 
 
 def pack(folder, epoch, arguments, demo, library, *named):

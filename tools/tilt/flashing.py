@@ -32,7 +32,8 @@ FAILURES = (
     (r"not in sync|not responding|out of sync|protocol expects|initialization failed",
      "no boot loader answers at {port} with {baud} baud (not in sync): wrong PORT or BOARD; {instead}"),
 )
-INSTALL = "avrdude is not installed: install it (Debian: apt install avrdude; macOS: brew install avrdude; Windows: the Arduino IDE has one, put it on PATH)"
+INSTALL = ("avrdude is not installed: install it (Debian: apt install avrdude; macOS: brew install avrdude; Windows: the Arduino IDE has one; "
+           "put it on PATH)")
 
 
 class Failed(TiltError):
@@ -101,8 +102,8 @@ def default_image(board):
     """The fullest set of filters that fits the board."""
     if not IN_WHEEL:
         return ROOT / f"build/{board.folder}/firmware.hex"
-    held = (PACKED / f"{name}-{board.clock_hz // 1_000_000}mhz.hex" for name in ("everyday", "small"))
-    return next(image for image in held if image.is_file() and len(content(image)) <= board.flash)
+    *fuller, last = (PACKED / f"{name}-{board.clock_hz // 1_000_000}mhz.hex" for name in ("everyday", "small"))
+    return next((image for image in fuller if image.is_file() and len(content(image)) <= board.flash), last)
 
 
 def chosen(name, image):
@@ -176,8 +177,9 @@ def banner(board, name):
         if found:
             return found
         if found == "":
-            raise Failed(f"written and verified, but the board is silent for {SILENT_S:.0f} s: press its reset and look with a serial monitor at {baud} baud")
-    raise Failed(f"written and verified, but no rate makes the board's output readable: is the image for a clock of {board.clock_hz // 1_000_000} MHz?")
+            raise Failed(f"written and verified, but the board is silent for {SILENT_S:.0f} s at {baud} baud: press its reset, look with a monitor")
+    raise Failed("written and verified, but the board's output is not readable at any rate: is the image for a clock of "
+                 f"{board.clock_hz // 1_000_000} MHz?")
 
 
 def flash(board_name, image, take_port, typed, log, say):

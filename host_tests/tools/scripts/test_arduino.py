@@ -15,6 +15,7 @@ sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import arduino_rules
 from system_support import SIMRUN, STREAMS, Skip, run, run_all, test
 from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
+from library import VERSION  # noqa: E402
 
 LIBRARY = pathlib.Path("build/library/tilt-filters")
 BUILT = pathlib.Path("build/arduino")
@@ -30,8 +31,9 @@ def every_file_of_the_library_keeps_the_rules():
     found = arduino_rules.findings(LIBRARY)
     assert found == [], found
     assert (LIBRARY / "LICENSE").read_text(encoding="utf-8") == pathlib.Path("LICENSE").read_text(encoding="utf-8")
-    version = re.search(r'FIRMWARE_VERSION "(.*)"', pathlib.Path("firmware/console/version.h").read_text(encoding="utf-8"))[1]
-    assert arduino_rules.properties(LIBRARY / "library.properties")[0]["version"][1] == version
+    assert arduino_rules.properties(LIBRARY / "library.properties")[0]["version"][1] == VERSION
+    again = [path for path in pathlib.Path("lib").rglob("library.*") if VERSION in path.read_text(encoding="utf-8")]
+    assert not again and VERSION not in pathlib.Path("tools/pyproject.toml").read_text(encoding="utf-8"), "the version stands in version.h alone"
 
 
 # file, what is there, what takes its place, what has to be said

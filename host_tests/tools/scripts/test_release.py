@@ -1,5 +1,5 @@
-"""What make release packs: equal bytes whatever the files' times, the umask and the time zone; a wheel that installs and works without a compiler; and
-a refusal where the change log or the tree is not a release's."""
+"""What make release packs: equal bytes whatever the files' times, the umask and the time zone; a wheel that installs and works without a compiler;
+and a refusal where the change log or the tree is not a release's."""
 import hashlib
 import os
 import pathlib
@@ -10,7 +10,8 @@ import tarfile
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from system_support import OUT, Skip, run, run_all, test
-from library import VERSION
+from laws import DEFAULT  # noqa: E402
+from library import VERSION  # noqa: E402
 
 PARTS = ("lib", "firmware", "hal", "sim", "tools", "web", "mk", "host_tests/tools/libtilt", "host_tests/support", "LICENSE", "CHANGELOG.md")
 EPOCH, VENV = "1700000000", pathlib.Path("build/venv")
@@ -86,21 +87,24 @@ def the_wheel_works_without_a_compiler_and_with_one():
     assert said(tilt, folder, "--version") == (0, f"tilt {VERSION}\n", "")
     status, out, _ = said(tilt, folder, "--help")
     assert status == 0 and "flash" in out, out
-    (folder / "log.txt").write_text("".join(f"X: {k * 37 % 90 * LSB:.2f}  Y: {k % 9 * LSB:.2f}  Z: {250 * LSB:.2f} m/s^2\n" for k in range(300)), encoding="ascii")
+    rows = (f"X: {k * 37 % 90 * LSB:.2f}  Y: {k % 9 * LSB:.2f}  Z: {250 * LSB:.2f} m/s^2\n" for k in range(300))
+    (folder / "log.txt").write_text("".join(rows), encoding="ascii")
     status, _, err = said(tilt, folder, "import", "log.txt", "--rate", "100", "-o", "log.csv")
     assert status == 0 and (folder / "log.csv").exists(), err
     status, _, err = said(tilt, folder, "plot", "log.csv", MPLCONFIGDIR=str(folder))
     assert status == 0 and (folder / "log.png").exists(), err
-    replay = ("replay", STREAM, "--filter", "adaptive", "-o", "out.csv")
+    replay = ("replay", STREAM, "--filter", DEFAULT, "-o", "out.csv")
     status, _, err = said(tilt, folder, *replay)
     assert status == 2 and "install gcc or clang" in err and err.count("\n") == 1, err
     status, _, err = said(tilt, folder, "nav")
     assert status == 2 and "run it in a checkout" in err and err.count("\n") == 1, err
+    status, out, err = said(tilt, folder, "flash", "/dev/ttyUSB99")
+    assert status == 1 and "tilt/images/everyday-16mhz.hex, " in out and "flash: avrdude is not installed" in err and err.count("\n") == 1, (out, err)
     (folder / "quick-cc").write_text('#!/bin/sh\nexec gcc "$@" -O0\n', encoding="ascii")
     (folder / "quick-cc").chmod(0o755)
     status, _, err = said(tilt, folder, *replay, path=os.environ["PATH"], CC=str(folder / "quick-cc"))
     assert status == 0, err
-    run(VENV / "bin/tilt", "replay", STREAM, "--filter", "adaptive", "-o", folder / "checkout.csv")
+    run(VENV / "bin/tilt", "replay", STREAM, "--filter", DEFAULT, "-o", folder / "checkout.csv")
     assert (folder / "out.csv").read_bytes() == (folder / "checkout.csv").read_bytes()
 
 
@@ -111,7 +115,8 @@ def the_simulator_builds_from_its_archive():
         archive.extractall(root, filter="data")
     place = root / f"simrun-{VERSION}"
     run("make", "-s", "-C", place, "CFLAGS=-O0")
-    run(place / "simrun", "--fw", "build/uno/firmware.elf", "--in", place / "sim/streams/rest-2lsb.csv", "--out", root / "rows.csv", "--max-ms", "100")
+    stream = place / "sim/streams" / STREAM.name
+    run(place / "simrun", "--fw", "build/uno/firmware.elf", "--in", stream, "--out", root / "rows.csv", "--max-ms", "100")
     assert b"# tilt-uno" in (root / "rows.csv").read_bytes()
 
 
