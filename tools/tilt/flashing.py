@@ -94,7 +94,7 @@ def content(image):
 
 def navigation(flash):
     """Whether it is the navigation image, which has no text of its own to know it by."""
-    known = PACKED.glob("nav*.hex") if IN_WHEEL else ROOT.glob("build/uno/nav*/firmware.hex")
+    known = PACKED.glob("nav*.hex") if IN_WHEEL else ROOT.glob("build/*/nav*/firmware.hex")
     return any(content(image) == flash for image in known)
 
 
