@@ -50,6 +50,7 @@ SCRIPTS = [
     plain("test_pages"), plain("test_page_sources"), plain("test_steps"), plain("test_make_words"), plain("test_proved"),
     plain("test_default"), plain("test_default_streams"), plain("test_images"),
     plain("test_run_tests", "system_images"), plain("test_faults", "system_images"),
+    plain("test_clients", "client_images"), plain("test_model_elsewhere"),
     plain("test_release", "flashtest_images", "build/library/tilt-filters.zip", "build/release/libtilt.args", "build/host/libtilt.so"),
     plain("test_arduino", "arduino_images"), plain("test_plotter", "system_images"), plain("test_compile_commands"),
     packages("test_nav_image", "build/sim/simrun", "nav_images"), packages("test_plot_run"), packages("test_robust", "build/host/pipeline_replay"),
