@@ -59,6 +59,7 @@ RULES = {
     **{f"firmware/{room}": (BELOW | room_headers(room), None) for room in ROOMS},
     "nav/image": (STANDARD | MACHINES | NAV_IMAGE | NAV | HAL, None),
     "sim/model": (LIBC | headers("sim/model") | {"adxl345_registers.h"}, SIMAVR),
+    "wokwi": (LIBC | MODEL | {"wokwi-api.h"}, None),
     "sim": (LIBC | SIM | {"adxl345_registers.h"}, SIMAVR),
 }
 # everything but hal/avr: here what must not be included; AVR headers where the code is for the chip
@@ -129,7 +130,7 @@ def refused(path, number, name):
 
 
 def breaches():
-    for path in files(".c", ".h", ".cpp", ".hpp", ".ino", folders=FOLDERS):
+    for path in files(".c", ".h", ".cpp", ".hpp", ".ino", folders=[*FOLDERS, "wokwi"]):
         for number, text in includes(path):
             found = NAMED.match(text)
             reason = refused(path, number, found.group(2)) if found else f"cannot see what is included by {text}"

@@ -17,7 +17,7 @@ NAMED = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"(?:[^"\n]*/)?([^"/\n]+)"|^[ \t]
 LINK = re.compile(r"\]\(([^)\s:]+)\)")
 IMPLEMENTED = (".c", ".cpp")
 PRODUCT = ("lib", "firmware", "hal", "nav", "sim", "host_tests")
-PAGES = ("docs", "second", "web", "tools", "checks", "campaigns", "mk")
+PAGES = ("docs", "second", "web", "wokwi", "tools", "checks", "campaigns", "mk")
 # what writes a page, draws it, launches a program or says what is wrong with it makes no number
 NO_NUMBER = {"page_sources.py", "results.py", "pictures.py", "page_benchmarks.py", "page_faults.py", "robust_pictures.py", "look.py", "launched.py",
              "port.py", "errors.py", "unity_line.py"}

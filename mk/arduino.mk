@@ -9,7 +9,7 @@ ARDUINO_C   := $(AVR_CC) -std=gnu11 $(ARDUINO_FLAGS)
 ARDUINO_CXX := avr-g++ -std=gnu++11 -fpermissive -fno-exceptions -fno-threadsafe-statics $(ARDUINO_FLAGS)
 ARDUINO_SRC := $(wildcard $(addprefix $(ARDUINO_DIR)/,cores/arduino/*.c cores/arduino/*.cpp libraries/Wire/src/*.cpp libraries/Wire/src/utility/*.c))
 LIBRARY     := $(B)/library/tilt-filters
-LIBRARY_OF  := $(shell find lib/filters -type f) $(wildcard lib/tilt/src/*.[ch] lib/machine/src/*.h)
+LIBRARY_OF  := $(shell find lib/filters -type f) $(wildcard lib/tilt/src/*.[ch] lib/machine/src/*.h) firmware/console/version.h
 LIBRARY_SRC := $(notdir $(wildcard lib/filters/src/*.c lib/tilt/src/*.c))
 ARDUINO_OBJ := $(patsubst $(ARDUINO_DIR)/%,$(A)/core/%.o,$(ARDUINO_SRC)) $(LIBRARY_SRC:%.c=$(A)/library/%.o)
 SKETCHES    := $(wildcard lib/filters/examples/*/*.ino)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # deps.sh GROUP...: installs what a group of make targets needs and this machine lacks; prints nothing if nothing is missing.
 # Groups: firmware sim test check flash flashtest arduino bench piocheck papers design tilt live fuzz coverage proof second demo. Packages come by
-# apt-get, numpy and matplotlib (check: lizard, design: scipy, tilt: tools/pyproject.toml) by pip into build/venv, Unity by tools/deps/get_unity.sh into build/unity
+# apt-get, numpy and matplotlib (check: lizard, design: scipy, flash: pyserial, tilt: tools/pyproject.toml) by pip into build/venv, Unity by tools/deps/get_unity.sh into build/unity
 # (UNITY_DIR=folder: use that one), avr8js by npm into build/second and esbuild into build/web. Uses sudo only when not root.
 # Ends with 1 on failure; with 3 if only the group second or demo is requested and Node, avr8js or esbuild is absent, too old, or npm has no network.
 set -eu
@@ -14,6 +14,7 @@ want_venv=no
 want_lizard=no
 want_scipy=no
 want_tilt=no
+want_serial=no
 want_unity=no
 want_pio=no
 want_avr8js=no
@@ -58,6 +59,10 @@ has_plot_packages() {
 # the command tilt runs from tools/; what it imports is installed
 has_tilt() {
     [ -x "$venv/bin/tilt" ] && cmp -s tools/pyproject.toml "$venv/pyproject.installed" && "$venv/bin/tilt" --help > /dev/null 2>&1
+}
+
+has_serial() {
+    [ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import serial' > /dev/null 2>&1
 }
 
 has_lizard() {
@@ -123,6 +128,14 @@ need_plots() {
     need ca-certificates has_certificates
 }
 
+need_serial() {
+    want_serial=yes
+    need python3 has python3
+    has_serial && return
+    need python3-venv has_venv_module
+    need ca-certificates has_certificates
+}
+
 need_lizard() {
     want_lizard=yes
     has_lizard && return
@@ -166,9 +179,9 @@ collect() {
             design) need_scipy ;;
             tilt) need_tilt ;;
             live) need_tilt; need chromium has_chromium ;;
-            flash) need_avr; need avrdude has avrdude; need python3 has python3 ;;
+            flash) need_avr; need avrdude has avrdude; need_serial ;;
             piocheck) need_avr; need_host_compiler; want_pio=yes; need python3-venv has_venv_module; need ca-certificates has_certificates ;;
-            flashtest) need_simulator; need avrdude has avrdude; need arduino-core-avr has_optiboot ;;
+            flashtest) need_simulator; need avrdude has avrdude; need arduino-core-avr has_optiboot; need_serial ;;
             arduino) need_simulator; need g++ has g++; need python3 has python3; need arduino-core-avr has_arduino_core ;;
             fuzz) need_host_compiler; need python3 has python3; need binutils has objcopy ;;
             coverage) need_simulator; need_plots; need_unity; need gcovr has gcovr ;;
@@ -223,22 +236,17 @@ install_packages() {
  $(how_to_supply $missing); log in $log"
 }
 
-install_lizard() {
-    echo "deps: installing with pip into $venv: lizard"
+# install_one PACKAGE PIP_WORD...
+install_one() {
+    package=$1
+    shift
+    echo "deps: installing with pip into $venv: $package"
     if [ ! -x "$venv/bin/python" ]; then
         python3 -m venv "$venv" > "$log" 2>&1 ||
             fail "cannot make $venv ($(tail -n 1 "$log")): $(how_to_supply python3-venv)"
     fi
-    "$venv/bin/python" -m pip install --disable-pip-version-check --no-input --retries 2 --timeout 20 \
-        -r tools/deps/requirements-check.txt > "$log" 2>&1 ||
-        fail "cannot install lizard ($(first_error)): check the network and pip's index, or install it into $venv; log in $log"
-}
-
-install_scipy() {
-    echo "deps: installing with pip into $venv: scipy"
-    "$venv/bin/python" -m pip install --disable-pip-version-check --no-input --retries 2 --timeout 20 \
-        -r tools/deps/requirements-design.txt > "$log" 2>&1 ||
-        fail "cannot install scipy ($(first_error)): check the network and pip's index, or install it into $venv; log in $log"
+    "$venv/bin/python" -m pip install --disable-pip-version-check --no-input --retries 2 --timeout 20 "$@" > "$log" 2>&1 ||
+        fail "cannot install $package ($(first_error)): check the network and pip's index, or install it into $venv; log in $log"
 }
 
 install_tilt() {
@@ -341,16 +349,19 @@ if [ $want_venv = yes ] && ! has_plot_packages; then
     install_plot_packages
 fi
 if [ $want_scipy = yes ] && ! has_scipy; then
-    install_scipy
+    install_one scipy -r tools/deps/requirements-design.txt
 fi
 if [ $want_tilt = yes ] && ! has_tilt; then
     install_tilt
+fi
+if [ $want_serial = yes ] && ! has_serial; then
+    install_one pyserial 'pyserial>=3.5'
 fi
 if [ $want_pio = yes ] && ! has_pio; then
     install_pio
 fi
 if [ $want_lizard = yes ] && ! has_lizard; then
-    install_lizard
+    install_one lizard -r tools/deps/requirements-check.txt
 fi
 if [ $want_unity = yes ]; then
     install_unity

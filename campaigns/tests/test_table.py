@@ -43,13 +43,15 @@ def packages(name, *targets):
 
 # Tests in Python; those without targets compile what they need, or need nothing.
 SCRIPTS = [
-    plain("test_flash", "flashtest_images"), plain("test_flash_words"), plain("test_resets", "system_images", "flashtest_images"),
+    plain("test_flash", "flashtest_images"), packages("test_flash_words"), plain("test_resets", "system_images", "flashtest_images"),
     plain("test_fault_page"), plain("test_limits"), plain("test_bench"), plain("test_bench_parts", "system_images"),
     plain("test_layout", "system_images"), plain("test_mutants"), plain("test_progress"),
     plain("test_papers", "paper_programs"), plain("test_papers_synthesis", "paper_programs"), plain("test_schedule"),
     plain("test_pages"), plain("test_page_sources"), plain("test_steps"), plain("test_make_words"), plain("test_proved"),
     plain("test_default"), plain("test_default_streams"), plain("test_images"),
     plain("test_run_tests", "system_images"), plain("test_faults", "system_images"),
+    plain("test_clients", "client_images"), plain("test_model_elsewhere"),
+    plain("test_release", "flashtest_images", "build/library/tilt-filters.zip", "build/release/libtilt.args", "build/host/libtilt.so"),
     plain("test_arduino", "arduino_images"), plain("test_plotter", "system_images"), plain("test_compile_commands"),
     packages("test_nav_image", "build/sim/simrun", "nav_images"), packages("test_plot_run"), packages("test_robust", "build/host/pipeline_replay"),
     packages("test_design"), packages("test_design_command"), packages("test_design_refusals"), packages("test_synthesised"),

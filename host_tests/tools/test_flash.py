@@ -179,10 +179,11 @@ def nothing_runs_until_the_port_of_an_empty_board_is_opened():
 def make_flash_writes_verifies_and_the_firmware_streams():
     need_tools()
     with board("flash", "--max-ms", "1000000") as (port, base, process):
-        done = talk(lambda: run("make", "flash", f"PORT={port}", expect=None), process)
+        done = talk(lambda: run("make", "flash", f"PORT={port}", expect=None), process)  # tools/flash.py, the code of tilt flash
         size = sum(len(data) for _, kind, data in records(HEX) if kind == 0)
         assert done.returncode == 0 and f"flash: {size:,} bytes written and verified" in done.stdout, said(done)
         assert f"{size} bytes of flash verified" in LOG.read_text(encoding="utf-8")
+        assert "; the board answers: tilt-uno " in done.stdout, done.stdout
         wait_for_rows(1, base, process)  # the firmware runs, so that the next opening of the port has something to interrupt
         turned = with_a_bit_turned(HEX, OUT / "turned.hex")
         wrong = talk(lambda: avrdude(port, "v", turned), process)

@@ -1,4 +1,4 @@
-"""What make flash and make monitor say: with an avrdude that ends as it is told, ports that are made up, and a pseudo terminal for the board."""
+"""What make flash, tilt flash and make monitor print: with a pretended avrdude, made-up ports, and a pseudo terminal for the board."""
 import contextlib
 import os
 import pathlib
@@ -6,13 +6,22 @@ import shutil
 import subprocess
 import sys
 import termios
+import threading
+import tty
+from unittest import mock
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-from system_support import OUT, images, run, run_all, test
+from system_support import OUT, images, needs, refused, run, run_all, test
+
+needs("flash", "serial")
+from tilt import flashing  # noqa: E402
 
 LOG = OUT / "flash.log"  # its own: test_flash may run at the same time
 PATIENCE_S = 300  # only reached when something is broken, however busy the machine
 FLASH = ("tools/flash.py", "write", "flash")
+TILT = (sys.executable, "-m", "tilt", "flash")
+OURS = b"stop\0go\0save\0load\0defaults\0"
+BANNER = b"# tilt-uno 9.9.9: roll and pitch\n"
 AT = "/dev/ttyUSB7"
 # what avrdude 7.1 and 6.3 say, BOARD, what it means
 FAILURES = (
@@ -54,16 +63,40 @@ def program(*command, words="", status=1, dev=None):
     (bin_ / "avrdude").write_text(f'#!/bin/sh\necho "$@" > {bin_}/typed\ncat {bin_}/said >&2\nexit {status}\n', encoding="ascii")
     (bin_ / "avrdude").chmod(0o755)
     environment = {**os.environ, "PATH": f"{bin_}:{os.environ['PATH']}", "FLASH_DEV": str(dev or folder("no-dev")), "FLASH_LOG": str(LOG),
-                   "MAKEFLAGS": ""}
+                   "MAKEFLAGS": "", "PYTHONPATH": "tools"}
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=PATIENCE_S, env=environment)
     typed = bin_ / "typed"
     return done, typed.read_text(encoding="ascii") if typed.exists() else ""
 
 
-def image_of(size):
+@contextlib.contextmanager
+def answering(text=BANNER):
+    """The port of a board that prints this again and again, as if it were reset whenever the port is opened."""
+    ours, its = os.openpty()
+    tty.setraw(its)
+    os.set_blocking(ours, False)
+    done = threading.Event()
+
+    def talk():
+        while not done.wait(0.02):
+            with contextlib.suppress(BlockingIOError):
+                os.write(ours, text)
+
+    talker = threading.Thread(target=talk)
+    talker.start()
+    try:
+        yield os.ttyname(its)
+    finally:
+        done.set()
+        talker.join()
+        os.close(its)
+        os.close(ours)
+
+
+def image_of(size, content=OURS):
     """An Intel HEX file that fills so many bytes of the flash."""
     OUT.mkdir(parents=True, exist_ok=True)
-    (OUT / "image.bin").write_bytes(bytes(size))
+    (OUT / "image.bin").write_bytes(content + bytes(size - len(content)))
     path = OUT / f"{size}.hex"
     run("avr-objcopy", "-I", "binary", "-O", "ihex", OUT / "image.bin", path)
     return path
@@ -81,12 +114,15 @@ def failures_of_avrdude_are_one_line_that_says_what_to_do():
 @test
 def each_board_is_written_at_the_rate_of_its_boot_loader_with_what_fits():
     image = image_of(4096)
-    for name, baud in (("uno", 115200), ("nano", 115200), ("nano-old", 57600), ("promini", 57600), ("promini-8mhz", 57600)):
-        done, typed = program(*FLASH, name, image, AT, status=0)
-        assert done.returncode == 0 and "4,096 bytes written and verified" in done.stdout, done
-        assert typed == f"-p atmega328p -c arduino -P {AT} -b {baud} -D -U flash:w:{image}:i\n", typed
-    done, typed = program("make", "flash", "BOARD=nano-old", f"PORT={AT}", status=0)
-    assert done.returncode == 0 and f" -P {AT} -b 57600 -D -U flash:w:build/promini/firmware.hex:i" in typed, done
+    with answering() as port:
+        for name, baud in (("uno", 115200), ("nano", 115200), ("nano-old", 57600), ("promini", 57600), ("promini-8mhz", 57600)):
+            done, typed = program(*FLASH, name, image, port, status=0)
+            words = "4,096 bytes written and verified; the board answers: tilt-uno 9.9.9: roll and pitch\n"
+            assert done.returncode == 0 and done.stdout.endswith(words), done
+            assert typed == f"-p atmega328p -c arduino -P {port} -b {baud} -D -U flash:w:{image}:i\n", typed
+            assert program(*TILT, port, "--board", name, "--image", image, status=0)[1] == typed
+        done, typed = program("make", "flash", "BOARD=nano-old", f"PORT={port}", status=0)
+        assert done.returncode == 0 and f" -P {port} -b 57600 -D -U flash:w:build/promini/firmware.hex:i" in typed, done
     small = " ".join(images.HOLDS["small"])
     notice = f"BOARD=nano-old has 30720 bytes of flash: the image holds the set small ({small}); choose others with FILTERS=\n"
     assert notice in done.stdout, done.stdout
@@ -101,11 +137,44 @@ def image_that_does_not_fit_the_board_is_refused_before_avrdude_runs():
         done, typed = program(*FLASH, board_, image_of(room + 16), AT, status=0)
         assert done.returncode == 2 and not typed and f"{room + 16}.hex is 16 bytes too large for an Arduino " in done.stderr, done.stderr
         assert f"({room + 16:,} where {room:,} fit): make flash BOARD={board_} writes a set of filters that fits" in done.stderr, done.stderr
-        done, typed = program(*FLASH, board_, image_of(room), AT, status=0)
-        assert done.returncode == 0 and typed, done.stderr
-    (OUT / "torn.hex").write_text(":10000000\nhello\n", encoding="ascii")
+        assert program(*FLASH, board_, image_of(room), AT, status=1)[1], "not written"
+    (OUT / "torn.hex").write_text(":0100000000FF\nhello\n", encoding="ascii")
     done, typed = program(*FLASH, "uno", OUT / "torn.hex", AT, status=0)
     assert done.returncode == 2 and "torn.hex:2: not an Intel HEX record" in done.stderr and not typed, done.stderr
+    whole = image_of(4096).read_text(encoding="ascii")
+    for wrong in (whole.replace(":10", ":20", 1), whole.replace("73746F70", "73746F71", 1), whole[:20]):  # length, a letter of "stop", cut
+        (OUT / "torn.hex").write_text(wrong, encoding="ascii")
+        done, typed = program(*FLASH, "uno", OUT / "torn.hex", AT, status=0)
+        assert done.returncode == 2 and "torn.hex:1: not an Intel HEX record" in done.stderr and not typed, done.stderr
+
+
+@test
+def image_of_something_else_is_refused():
+    done, typed = program(*TILT, AT, "--image", image_of(4096, b"Blink"), status=0)
+    assert done.returncode == 2 and "4096.hex is not an image of this firmware" in done.stderr and done.stderr.count("\n") == 1 and not typed, done
+    for words, why in (("--image", "/nowhere.hex"), "no /nowhere.hex: build it"), (("--board", "mega"), "no board 'mega': choose from uno nano "):
+        done, typed = program(*TILT, AT, *words, status=0)
+        assert done.returncode == 2 and why in done.stderr and done.stderr.count("\n") == 1 and not typed, done
+
+
+@test
+def a_board_that_does_not_answer_is_a_failure():
+    uno, slow = (flashing.boards.TABLE[name] for name in ("uno", "promini-8mhz"))
+    with mock.patch.multiple(flashing, SILENT_S=0.5, GARBLED_S=0.05):
+        for text, board_, words in ((b"\xf3\x81" * 200, uno, "not readable at any rate: is the image for a clock of 16 MHz?"),
+                                    (b"", uno, "is silent for 0 s at 115200 baud"), (b"", slow, "at 57600 baud")):
+            with answering(text) as port:
+                refused(flashing.Failed, lambda port=port, board_=board_: flashing.banner(board_, port), words, "written and verified, but")
+
+
+@test
+def tilt_flash_lists_the_ports():
+    several = folder("dev", ("ttyACM0", "/dev/null"), ("ttyUSB0", "/dev/zero"), ("serial/by-id/usb-Arduino-if00", "../../ttyACM0"))
+    done, typed = program(*TILT, "--board", "nano", dev=several)
+    assert done.returncode == 0 and not typed, done
+    assert f"  tilt flash {several}/ttyACM0 --board nano   (usb-Arduino-if00)\n  tilt flash {several}/ttyUSB0 --board nano\n" in done.stdout, done
+    done, _ = program(*TILT)
+    assert done.returncode == 2 and "tilt flash: no board found (" in done.stderr and done.stderr.endswith("\n  tilt flash PORT\n"), done
 
 
 @test
@@ -114,9 +183,9 @@ def the_only_port_is_taken_and_named():
     for files in ((("ttyACM0", "/dev/null"),), (("ttyUSB3", "/dev/null"), ("serial/by-id/usb-1a86_USB_Serial-if00-port0", "../../ttyUSB3")),
                   (("serial/by-id/usb-Arduino-if00", "/dev/null"),), (("ttyACM1", "/dev/null"), ("ttyUSB0", "/dev/gone"))):
         dev = folder("dev", *files)
-        done, typed = program(*FLASH, "uno", image, status=0, dev=dev)
+        done, typed = program(*FLASH, "uno", image, dev=dev)
         path = f"{dev}/{files[0][0]}"
-        assert done.returncode == 0 and f" -P {path} " in typed and f"flash: using {path}, the only port of a board\n" in done.stdout, done
+        assert f" -P {path} " in typed and f"flash: using {path}, the only port of a board\n" in done.stdout, done
 
 
 @test

@@ -10,6 +10,7 @@ import sys
 
 from tilt import commands
 from tilt.errors import TiltError
+from tilt.place import VERSION
 
 EXIT_UNUSABLE, EXIT_INTERRUPTED = 2, 130
 
@@ -30,6 +31,7 @@ class Parser(argparse.ArgumentParser):
 
 def parser_of(found):
     parser = Parser(prog="tilt", description="Work with tilt-uno recordings and boards on the PC.")
+    parser.add_argument("--version", action="version", version=f"tilt {VERSION}")
     jobs = parser.add_subparsers(dest="job", metavar="COMMAND", required=True)
     for name, module in found.items():
         job = jobs.add_parser(name, help=module.SUMMARY, description=module.__doc__,

@@ -5,18 +5,20 @@ import mmap
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 from dataclasses import dataclass
 
 import numpy as np
 
 from tilt.errors import TiltError
+from tilt.place import IN_WHEEL, ROOT, VERSION
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIBRARY = pathlib.Path("build/host/libtilt.so")
 SOURCES = ("firmware/*/*.[ch]", "lib/*/src/*.[ch]", "hal/*.h", "hal/host/*.[ch]", "sim/*/*.[ch]", "host_tests/tools/libtilt/*.[ch]",
            "host_tests/support/*.[ch]",
            "Makefile", "tools/tilt/tilt.mk")
+WHEELS = "libtilt.args"  # in a wheel: what the compiler is called with, from its folder; there make is not needed
 RATES_DHZ = tuple(125 << power for power in range(7))  # of the firmware
 FORK_FROM_ROWS = 20_000  # a second process takes 20 ms to start and end
 MISSING, THERE, AT_RAIL = 0, 1, 2
@@ -73,6 +75,24 @@ def _stale(root):
 
 
 def _build(root):
+    return _compile(root) if (root / WHEELS).exists() else _make(root)
+
+
+def _compile(root):
+    compiler = next((each for each in (os.environ.get("CC"), "cc", "gcc", "clang") if each and shutil.which(each)), None)
+    if compiler is None:
+        raise TiltError("this command compiles the filters when it is first used, and there is no C compiler: install gcc or clang "
+                        "(Debian: apt install gcc libc6-dev; macOS: xcode-select --install)")
+    try:
+        (root / LIBRARY).parent.mkdir(parents=True, exist_ok=True)
+        done = subprocess.run([compiler, f"@{WHEELS}", "-o", str(LIBRARY)], cwd=root, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise TiltError(f"cannot compile the filters in {root}: {error.strerror}") from error
+    if done.returncode != 0:
+        raise TiltError(f"{compiler} could not compile the filters in {root}: {(done.stderr.strip().splitlines() or ['no reason given'])[0]}")
+
+
+def _make(root):
     try:
         done = subprocess.run(["make", "-s", str(LIBRARY)], cwd=root, capture_output=True, text=True, check=False)
     except OSError as error:
@@ -184,7 +204,7 @@ def replay(stream, names, rate_dhz, range_g=16, report=None):
     tables = np.frombuffer(memory, ROW, len(names) * room, len(names) * 8).reshape(len(names), room)
     library()
     mine, other = list(range(len(names))), []
-    if len(stream) >= FORK_FROM_ROWS and len(names) > 1 and (os.cpu_count() or 1) > 1:
+    if len(stream) >= FORK_FROM_ROWS and len(names) > 1 and (os.cpu_count() or 1) > 1 and hasattr(os, "fork"):
         mine, other = _shares(names)
     child = _in_child(lambda: [_into(given, names, i, rate_dhz, range_g, tables, counts) for i in other]) if other else None
     for done, i in enumerate(mine, 1):
@@ -245,6 +265,8 @@ def flashed_by(name):
     holding = [each for each in names if name in holds[each].split()]
     if not holding:
         return f"make flash FILTERS={name}"
+    if IN_WHEEL:
+        return "tilt flash PORT" if holding[0] == names[0] else f"tilt flash PORT --image tilt-uno-{VERSION}-{holding[0]}-16mhz.hex"
     return "make flash" if holding[0] == names[0] else f"make flash FILTERS={holding[0]}"
 
 

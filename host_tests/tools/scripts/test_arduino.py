@@ -15,6 +15,7 @@ sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import arduino_rules
 from system_support import SIMRUN, STREAMS, Skip, run, run_all, test
 from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
+from library import VERSION  # noqa: E402
 
 LIBRARY = pathlib.Path("build/library/tilt-filters")
 BUILT = pathlib.Path("build/arduino")
@@ -30,8 +31,9 @@ def every_file_of_the_library_keeps_the_rules():
     found = arduino_rules.findings(LIBRARY)
     assert found == [], found
     assert (LIBRARY / "LICENSE").read_text(encoding="utf-8") == pathlib.Path("LICENSE").read_text(encoding="utf-8")
-    version = re.search(r'FIRMWARE_VERSION "(.*)"', pathlib.Path("firmware/console/version.h").read_text(encoding="utf-8"))[1]
-    assert arduino_rules.properties(LIBRARY / "library.properties")[0]["version"][1] == version
+    assert arduino_rules.properties(LIBRARY / "library.properties")[0]["version"][1] == VERSION
+    again = [path for path in pathlib.Path("lib").rglob("library.*") if VERSION in path.read_text(encoding="utf-8")]
+    assert not again and VERSION not in pathlib.Path("tools/pyproject.toml").read_text(encoding="utf-8"), "the version stands in version.h alone"
 
 
 # file, what is there, what takes its place, what has to be said
@@ -39,8 +41,8 @@ BROKEN = [
     ("library.properties", "name=tilt-filters", "name=tilt/filters", "library.properties:1: name may not be 'tilt/filters'"),
     ("library.properties", "name=tilt-filters", "name=Arduino-tilt", "library.properties:1: name may not be 'Arduino-tilt'"),
     ("library.properties", "name=tilt-filters", "name tilt-filters", "library.properties:1: no '=' in 'name tilt-filters'"),
-    ("library.properties", "version=0.1.0", "version=0.1", "library.properties:2: version may not be '0.1'"),
-    ("library.properties", "version=0.1.0", "version=0.1.1", "library.json: version is '0.1.0', in library.properties '0.1.1'"),
+    ("library.properties", f"version={VERSION}", "version=0.1", "library.properties:2: version may not be '0.1'"),
+    ("library.properties", f"version={VERSION}", "version=9.9.9", f"library.json: version is '{VERSION}', in library.properties '9.9.9'"),
     ("library.properties", "category=Data Processing", "category=Filters", "library.properties:7: category may not be 'Filters'"),
     ("library.properties", "url=https://tilt-uno.example/", "url=", "library.properties:9: url may not be ''"),
     ("library.properties", "tilt_filter.h", "tilt.hpp", "library.properties:11: includes may not be 'tilt.hpp'"),

@@ -9,6 +9,7 @@ or the board cannot be used.
 """
 from tilt.errors import TiltError
 from tilt.numbers import whole_option
+from tilt.place import IN_WHEEL
 
 NAME = "nav"
 SUMMARY = "run a flight through the navigation filter (paper 003)"
@@ -40,6 +41,9 @@ def flight_of(args):
 def ran(args, sent):
     from tilt.navigation import boards
     from tilt.progress import bar
+
+    if IN_WHEEL and args.board in ("sim", "pc"):
+        raise TiltError(f"--board {args.board} needs the sources of the navigation image: run it in a checkout, with make; a PORT works from here")
 
     with bar("filtering", "record") as report:
         if args.board == "sim":

@@ -1,0 +1,9 @@
+"""Where the firmware's and the libraries' sources are: in this checkout, or packed beside this file in a wheel (mk/scripts/wheel.py)."""
+import pathlib
+import re
+
+PACKED = pathlib.Path(__file__).resolve().with_name("source")
+IN_WHEEL = PACKED.is_dir()
+ROOT = PACKED if IN_WHEEL else pathlib.Path(__file__).resolve().parents[2]
+VERSION_FILE = "firmware/console/version.h"  # the only file with the version
+VERSION = re.search(r'FIRMWARE_VERSION "(.*)"', (ROOT / VERSION_FILE).read_text(encoding="ascii"))[1]
