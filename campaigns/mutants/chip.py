@@ -1,5 +1,5 @@
 """Mutants of what only the chip compiles, judged in the simulator: a few programs, made in the worker's tree by the Makefile's own rules, each
-with tests of host_tests/system/system_tests.py that run it alone, the cheapest first. No counter says which line a test reaches here.
+with tests of host_tests/system that run it alone, the cheapest first. No counter says which line a test reaches here.
 """
 import shutil
 import threading
@@ -8,7 +8,7 @@ import time
 from judge import Same
 from shop import ROOT, Stop, run
 
-# program, then words that choose its tests; not those that break a source themselves, which a mutant of the same text would fail by accident;
+# program, then words that choose its tests, of system_tests.py or, before a colon, of another file of its folder; not those that break a source themselves, which a mutant of the same text would fail by accident;
 # what store_keeps_a_set leaves, store_survives_power_cuts begins with: the quicker one is run before it
 PROGRAMS = {
     "hal_probe": ("eeprom_is_written",),
@@ -18,8 +18,11 @@ PROGRAMS = {
                  "main_loop_starved", "over_long_and_garbage", "lines_typed_behind_a_change_of_baud", "line_held_low",
                  "output_is_a_valid_stream", "two_runs_are_identical", "silent_int1", "no_sensor_is_told", "a_board_locked_out",
                  "line_is_idle", "start_after_the_watchdog", "divider_is_the_nearest", "led_on_d13", "start_waits_for_a_stop",
-                 "line_with_a_damaged"),
-    "hang/firmware": ("hung_loop_is_reset", "hung_filtering_is_reset"),
+                 "line_with_a_damaged", "storm_on_int1_keeps", "int1_that_flickers", "storm_has_one_number", "random_bursts_of_edges",
+                 "glitch_on_int1", "held_high_int1", "bus_fault_per_sample", "slow_wires_stretch", "sda_too_slow_for_the_master",
+                 "i2c_100_is_slow", "settings_are_in_force", "race_on_a_sound_bus"),
+    "hang/firmware": ("hung_loop_is_reset", "hung_filtering_is_reset", "test_resets.py:each_cause", "test_resets.py:watchdog_resets_twice",
+                      "test_resets.py:a_loop_of_watchdog_resets"),
 }
 ONLY_CHIP = ("hal/avr/", "lib/filters/src/fx_avr.h", "lib/filters/src/fx_avr.c", "firmware/app/main.c")
 HANG_TIMES, HANG_MIN_S = 10, 60
@@ -53,7 +56,7 @@ class Chip:
             if self.ready:
                 return
             lists = ["build/uno/filters.txt", *(f"build/uno/{name}/filters.txt" for name in self.sets())]
-            sets = run(["make", "-s", "build/sim/simrun", *lists], self.clean, 600)
+            sets = run(["make", "-s", "build/sim/simrun", "flashtest_images", *lists], self.clean, 600)
             for name, words in PROGRAMS.items():
                 status, said = self.make(self.clean, name)
                 if status != 0 or sets[0] != 0:
@@ -73,7 +76,8 @@ class Chip:
 
     @staticmethod
     def passes(tree, word, limit_s):
-        return run(["python3", "-B", "host_tests/system/system_tests.py", word], tree, limit_s)[0] == 0
+        file, _, word = word.rpartition(":")
+        return run(["python3", "-B", f"host_tests/system/{file or 'system_tests.py'}", word], tree, limit_s)[0] == 0
 
     def verdict(self, mutant, worker):
         self.prepare()

@@ -1,12 +1,14 @@
 /*
  * Runs on the ATmega328P (simavr): the parts of the HAL that the firmware does not use yet, each answered with a line
  * on the UART. Reads EEPROM byte 1023, writes its complement, waits for the write by sleeping, reads it back; sets the
- * alarm and says how late main woke, also where it had passed already; then sleeps with interrupts off.
+ * alarm and says how late main woke, also where it had passed already; clocks the bus by hand and says how long it took;
+ * then sleeps with interrupts off.
  */
 #include <avr/interrupt.h>
 #include <avr/sleep.h>
 
 #include "hal_eeprom.h"
+#include "hal_i2c.h"
 #include "hal_irq.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
@@ -55,6 +57,15 @@ static void say_passed(uint16_t ago_us)
     say(FLASH_TEXT("slept"), slept_us > UINT8_MAX ? UINT8_MAX : (uint8_t)slept_us);
 }
 
+/* What the bus is after the clocks by hand, and how long they took, in units of 4 us. */
+static void say_clear(void)
+{
+    uint32_t begun_us = hal_time_us();
+    uint8_t lines = hal_i2c_clear();
+    say(FLASH_TEXT("clear"), (uint8_t)((hal_time_us() - begun_us) / 4u));
+    say(FLASH_TEXT("lines"), lines);
+}
+
 static const uint16_t passed_us[] IN_FLASH = { 0, 100, 900 };
 static const uint16_t alarms_us[] IN_FLASH = { 300, 3000, 5000, 10000, 25000, 32766, 40000 };
 
@@ -79,6 +90,7 @@ int main(void)
     for (uint8_t i = 0; i < sizeof passed_us / sizeof passed_us[0]; i++) {
         say_passed(flash_u16(&passed_us[i]));
     }
+    say_clear();
     while (!hal_uart_tx_idle()) {
         hal_sleep_until_wake();
     }

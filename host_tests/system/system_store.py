@@ -18,7 +18,7 @@ def eeprom_is_written_on_the_chip_and_kept_in_the_file():
     image = OUT / "eeprom.bin"
     image.write_bytes(bytes([0xFF] * 1023 + [0x5A]))
     done = run(SIMRUN, "--fw", "build/uno/hal_probe.elf", "--in", STREAMS / "tilt-fast.csv", "--out", OUT / "eeprom.txt", "--eeprom", image,
-               "--max-ms", "1000", expect=None)
+               "--fault", "pc:hal_i2c_clear#1:sda:2", "--max-ms", "1000", expect=None)
     assert done.returncode == 8, done.stderr
     lines = [line.split() for line in (OUT / "eeprom.txt").read_text().splitlines()]
     said = dict(lines)
@@ -28,6 +28,8 @@ def eeprom_is_written_on_the_chip_and_kept_in_the_file():
     late_us = [int(value, 2) for name, value in lines if name == "late"]
     assert len(late_us) == 7 and max(late_us) <= 20, f"main wakes {late_us} us after its alarm"
     slept_us = [int(value, 2) for name, value in lines if name == "slept"]
+    clear_us = 4 * int(said["clear"], 2)
+    assert said["lines"] == "00000010" and 244 <= clear_us <= 300, f"16 clocks of three steps of 5 us, SDA low, took {clear_us} us"
     assert len(slept_us) == 3 and max(slept_us) <= 40, f"main sleeps {slept_us} us although its alarm has passed"
 
 
