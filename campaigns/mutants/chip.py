@@ -8,8 +8,9 @@ import time
 from judge import Same
 from shop import ROOT, Stop, run
 
-# program, then words that choose its tests, of system_tests.py or, before a colon, of another file of its folder; not those that break a source themselves, which a mutant of the same text would fail by accident;
-# what store_keeps_a_set leaves, store_survives_power_cuts begins with: the quicker one is run before it
+# program, then words that choose its tests, of system_tests.py or, before a colon, of another file of its folder; not those that break a source
+# themselves, which a mutant of the same text would fail by accident; what store_keeps_a_set leaves, store_survives_power_cuts begins with: the
+# quicker one is run before it
 PROGRAMS = {
     "hal_probe": ("eeprom_is_written",),
     "store_probe": ("store_keeps_a_set", "store_survives_power_cuts"),

@@ -1,8 +1,8 @@
 /*
  * Runs on the ATmega328P (simavr): the parts of the HAL that the firmware does not use yet, each answered with a line
  * on the UART. Reads EEPROM byte 1023, writes its complement, waits for the write by sleeping, reads it back; sets the
- * alarm and says how late main woke, also where it had passed already; clocks the bus by hand and says how long it took;
- * then sleeps with interrupts off.
+ * alarm and says how late main woke, also where it had passed already; clocks the bus by hand and says how long it
+ * took; then sleeps with interrupts off.
  */
 #include <avr/interrupt.h>
 #include <avr/sleep.h>
