@@ -9,7 +9,8 @@ RELEASE_DEMO  := $(R)/tilt-demo.html
 release_of     = $(filter $(R)/$(1)/%,$(foreach named,$(RELEASE_16MHZ) $(RELEASE_8MHZ),$(lastword $(subst =, ,$(named)))))
 # The linker's relaxation keeps a redundant `ret` whose address equals the offset of some debug string, so an image depends on the length of the
 # folder's name. Here the debug information does not have that name; so the images have a folder of their own.
-release_make   = $(MAKE) -j2 BOARD=$(1) U=$(R)/$(1) FILTERS=$(2) AVR_DEBUG='$(AVR_DEBUG) -fdebug-prefix-map=$(CURDIR)=.' DEMO=$(RELEASE_DEMO)
+NAMELESS      := -gno-record-gcc-switches -fdebug-prefix-map=$(CURDIR)=.
+release_make   = $(MAKE) -j2 BOARD=$(1) U=$(R)/$(1) FILTERS=$(2) AVR_DEBUG='$(AVR_DEBUG) $(NAMELESS)' DEMO=$(RELEASE_DEMO)
 # what the wheel's C is compiled with where it is first used
 LIBTILT_ARGS  := $(R)/libtilt.args
 
