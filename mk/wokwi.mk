@@ -1,6 +1,6 @@
 # Wokwi: a project with the sensor model as a custom chip. Its own API is a header of ours on the PC (host_tests/wokwi).
 $(H)/wokwi/%.o $(H)/host_tests/wokwi/%.o: HOST_FLAGS += -Ihost_tests/wokwi
-$(H)/test_wokwi_chip: $(H)/wokwi/adxl345.chip.o
+$(H)/test_wokwi: $(H)/wokwi/adxl345.chip.o
 
 ## wokwi: build build/wokwi, a project for the Wokwi simulator: the firmware and the sensor model as a custom chip (wokwi/README.md)
 wokwi:

@@ -158,6 +158,17 @@ def image_of_something_else_is_refused():
 
 
 @test
+def the_navigation_image_is_known_by_what_was_built():
+    image, folder_ = image_of(4096, b"no text of its own"), OUT / "build/promini/nav9"
+    folder_.mkdir(parents=True, exist_ok=True)
+    with mock.patch.object(flashing, "ROOT", OUT):
+        for built, ours in ((image_of(2048), False), (image, True)):
+            shutil.copyfile(built, folder_ / "firmware.hex")
+            assert flashing.navigation(flashing.content(image)) == ours
+        assert flashing.chosen("nano-old", image)[2:] == (4096, False)
+
+
+@test
 def a_board_that_does_not_answer_is_a_failure():
     uno, slow = (flashing.boards.TABLE[name] for name in ("uno", "promini-8mhz"))
     with mock.patch.multiple(flashing, SILENT_S=0.5, GARBLED_S=0.05):
