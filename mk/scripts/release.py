@@ -3,7 +3,7 @@
 
     release.py judge                                 the first section of CHANGELOG.md is the version's, and all is committed
     release.py pack FOLDER EPOCH ARGUMENTS DEMO LIBRARY SET-CLOCK=HEX...
-                                                     writes FOLDER again: images, demo, libraries, simulator, notes and SHA256SUMS
+                                                     writes FOLDER again: images, demo, libraries, simulator, licences, notes and SHA256SUMS
 
 EPOCH: the time that archives carry. ARGUMENTS: file with the compiler's arguments for the wheel's C. An image that fits no board of its clock is
 left out.
@@ -80,6 +80,7 @@ def pack(folder, epoch, arguments, demo, library, *named):
     (folder / "SHA256SUMS").write_text("".join(sums), encoding="ascii")
     print(f"release: {len(sums) + 1} files, {sum(path.stat().st_size for path in folder.iterdir()) // 1000} kB, in {folder}")
     return 0
+    (folder / "LICENSES.txt").write_bytes(b"\n".join(pathlib.Path(path).read_bytes() for path in ("LICENSE", wheel.AVR_LIBC)))
 
 
 if __name__ == "__main__":

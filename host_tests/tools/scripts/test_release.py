@@ -49,7 +49,7 @@ def packed(root, umask=0o022, zone="UTC", **more):
 def packing_twice_gives_equal_bytes():
     root = tree("first")
     first = packed(root)
-    assert len(first) == 8 and f"tilt-uno-{VERSION}-everyday-16mhz.hex" in first, list(first)
+    assert len(first) == 9 and f"tilt-uno-{VERSION}-everyday-16mhz.hex" in first, list(first)
     assert not any("8mhz" in name for name in first if "16mhz" not in name), "an image that no board of its clock has room for"
     for path in root.rglob("*"):
         os.utime(path, (2e9, 2e9))
@@ -65,7 +65,9 @@ def installed(root):
     place = root / "venv"
     run(VENV / "bin/python", "-m", "venv", "--without-pip", place)
     (wheel,) = (root / "dist").glob("*.whl")
-    run(VENV / "bin/python", "-m", "pip", "--python", place / "bin/python", "install", "--no-deps", "--no-index", "-q", wheel)
+    run(VENV / "bin/python", "-m", "pip", "--python", place / "bin/python", "install", "--no-deps", "--no-index", "--no-compile", "-q", wheel)
+    names = {path.name for path in place.glob("lib/*/site-packages/*.dist-info/LICENSE*")}
+    assert names == {"LICENSE", "LICENSE-avr-libc"}, names  # the images contain parts of avr-libc
     (site,) = place.glob("lib/*/site-packages")
     (theirs,) = VENV.resolve().glob("lib/*/site-packages")
     (site / "dependencies.pth").write_text(f"{theirs}\n", encoding="utf-8")
