@@ -1,8 +1,10 @@
 """What make release packs: equal bytes whatever the files' times, the umask and the time zone; a wheel that installs and works without a compiler;
 and a refusal where the change log or the tree is not a release's."""
+import ast
 import hashlib
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -12,6 +14,7 @@ sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from system_support import OUT, Skip, run, run_all, test
 from laws import DEFAULT  # noqa: E402
 from library import VERSION  # noqa: E402
+import wheel  # noqa: E402
 
 PARTS = ("lib", "firmware", "hal", "sim", "tools", "web", "mk", "host_tests/tools/libtilt", "host_tests/support", "LICENSE", "CHANGELOG.md")
 EPOCH, VENV = "1700000000", pathlib.Path("build/venv")
@@ -72,6 +75,18 @@ def installed(root):
     (theirs,) = VENV.resolve().glob("lib/*/site-packages")
     (site / "dependencies.pth").write_text(f"{theirs}\n", encoding="utf-8")
     return place / "bin/tilt"
+
+
+@test
+def the_packages_it_depends_on_are_those_it_imports():
+    named = {"serial": "pyserial", "PIL": "pillow"}
+    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in pathlib.Path("tools/tilt").rglob("*.py")]
+    nodes = [node for each in trees for node in ast.walk(each)]
+    found = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    found |= {node.module for node in nodes if isinstance(node, ast.ImportFrom) and not node.level}
+    found = {name.split(".")[0] for name in found} - set(sys.stdlib_module_names) - {"tilt", "boards"}
+    listed = {re.match(r"\w+", each)[0] for each in wheel.project()["project"]["dependencies"]}
+    assert {named.get(name, name) for name in found} == listed, found
 
 
 def said(tilt, folder, *words, path="", **more):
