@@ -142,8 +142,9 @@ def what_is_no_release_is_refused():
     root = tree("unready")
     log = root / "CHANGELOG.md"
 
-    def judged():
-        done = subprocess.run([sys.executable, "-B", "mk/scripts/release.py", "judge"], cwd=root, capture_output=True, text=True)
+    def judged(**more):
+        done = subprocess.run([sys.executable, "-B", "mk/scripts/release.py", "judge"], cwd=root, env={**os.environ, **more},
+                              capture_output=True, text=True)
         return done.returncode, done.stderr
 
     (root / ".gitignore").write_text("/build/\n", encoding="ascii")
@@ -157,7 +158,12 @@ def what_is_no_release_is_refused():
         found = judged()
         assert found[0] == status and words in found[1], found
     (root / "stray.c").write_text("", encoding="ascii")
-    assert "1 files are not committed, such as stray.c" in judged()[1]
+    assert "release: not committed: stray.c\n" in judged()[1]
+    status, err = judged(GIT_DIR="/nowhere")
+    assert status == 1 and "\nrelease: no git checkout (" in err and err.count("\n") == 2, err
+    done = subprocess.run([sys.executable, "-B", "mk/scripts/release.py", "pack", "dist", "", "a", "b", "c", "d=e"], cwd=root,
+                          capture_output=True, text=True)
+    assert done.returncode == 1 and done.stderr.startswith("release: '' is no time for the archives: ") and done.stderr.count("\n") == 1, done.stderr
     recipe = subprocess.run(["make", "-n", "release"], capture_output=True, text=True, check=True).stdout
     assert recipe.index("release.py judge") < recipe.index("check_pages.py --strict") < recipe.index("release.py pack"), recipe
 
