@@ -115,6 +115,8 @@ def the_wheel_works_without_a_compiler_and_with_one():
     assert status == 2 and "install gcc or clang" in err and err.count("\n") == 1, err
     status, _, err = said(tilt, folder, "nav")
     assert status == 2 and "run it in a checkout" in err and err.count("\n") == 1, err
+    image = f"tilt flash PORT --image tilt-uno-{VERSION}-nav-16mhz.hex\n"
+    assert said(tilt.with_name("python"), folder, "-c", "from tilt.navigation import boards; print(boards.NAVFLASH)") == (0, image, "")
     status, out, err = said(tilt, folder, "flash", "/dev/ttyUSB99")
     assert status == 1 and "tilt/images/everyday-16mhz.hex, " in out and "flash: avrdude is not installed" in err and err.count("\n") == 1, (out, err)
     (folder / "quick-cc").write_text('#!/bin/sh\nexec gcc "$@" -O0\n', encoding="ascii")
