@@ -128,6 +128,15 @@ def the_wheel_works_without_a_compiler_and_with_one():
 
 
 @test
+def an_installation_without_sources_says_so():
+    bare = OUT.resolve() / "bare"
+    shutil.rmtree(bare, ignore_errors=True)
+    shutil.copytree("tools/tilt", bare / "lib/tilt", ignore=shutil.ignore_patterns("__pycache__"))
+    status, _, err = said(sys.executable, bare, "-B", "-m", "tilt", "--version", PYTHONPATH=str(bare / "lib"))
+    assert status == 1 and err.startswith("tilt: installed without its sources: ") and err.count("\n") == 1, err
+
+
+@test
 def the_simulator_builds_from_its_archive():
     root = OUT.resolve() / "first"
     with tarfile.open(root / f"dist/simrun-{VERSION}.tar.gz") as archive:
