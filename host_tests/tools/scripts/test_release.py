@@ -8,7 +8,6 @@ import re
 import shutil
 import subprocess
 import sys
-import tarfile
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from system_support import OUT, Skip, run, run_all, test
@@ -139,8 +138,7 @@ def an_installation_without_sources_says_so():
 @test
 def the_simulator_builds_from_its_archive():
     root = OUT.resolve() / "first"
-    with tarfile.open(root / f"dist/simrun-{VERSION}.tar.gz") as archive:
-        archive.extractall(root, filter="data")
+    run("tar", "-xzf", root / f"dist/simrun-{VERSION}.tar.gz", "-C", root)  # tarfile's filter came with Python 3.11.4, Debian 12 has 3.11.2
     place = root / f"simrun-{VERSION}"
     run("make", "-s", "-C", place, "CFLAGS=-O0")
     stream = place / "sim/streams" / STREAM.name
