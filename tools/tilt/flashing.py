@@ -1,4 +1,4 @@
-"""Writes an image to a board with avrdude, through its boot loader, and hears whether the firmware starts. `tilt flash` and make flash use it."""
+"""Writes an image to a board with avrdude, through its boot loader, and waits for the firmware's banner. `tilt flash` and make flash use it."""
 import os
 import pathlib
 import re
@@ -132,7 +132,7 @@ def chosen(name, image):
         raise TiltError(f"{image} is {len(flash) - board.flash:,} bytes too large for {board.what} ({len(flash):,} where {board.flash:,} fit): "
                         f"{FITTING.format(name=name)}")
     if OURS not in flash and not navigation(flash):
-        raise TiltError(f"{image} is not an image of this firmware: avrdude itself writes others")
+        raise TiltError(f"{image} is not an image of this firmware: to write it, use avrdude itself")
     return board, image, len(flash), OURS in flash
 
 
@@ -200,7 +200,8 @@ def banner(board, name):
         if found:
             return found
         if found == "":
-            raise Failed(f"written and verified, but the board is silent for {SILENT_S:.0f} s at {baud} baud: press its reset, look with a monitor")
+            raise Failed(f"written and verified, but the board is silent for {SILENT_S:.0f} s at {baud} baud: press its reset button, and look with "
+                         "a serial monitor")
     raise Failed("written and verified, but the board's output is not readable at any rate: is the image for a clock of "
                  f"{board.clock_hz // 1_000_000} MHz?")
 
