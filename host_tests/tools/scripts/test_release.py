@@ -77,7 +77,7 @@ def installed(root):
 
 
 @test
-def the_packages_it_depends_on_are_those_it_imports():
+def the_project_lists_what_is_imported_and_every_folder():
     named = {"serial": "pyserial", "PIL": "pillow"}
     trees = [ast.parse(path.read_text(encoding="utf-8")) for path in pathlib.Path("tools/tilt").rglob("*.py")]
     nodes = [node for each in trees for node in ast.walk(each)]
@@ -86,6 +86,9 @@ def the_packages_it_depends_on_are_those_it_imports():
     found = {name.split(".")[0] for name in found} - set(sys.stdlib_module_names) - {"tilt", "boards"}
     listed = {re.match(r"\w+", each)[0] for each in wheel.project()["project"]["dependencies"]}
     assert {named.get(name, name) for name in found} == listed, found
+    folders = {".".join(path.parent.parts[1:]) for path in pathlib.Path("tools/tilt").rglob("__init__.py")}
+    packages = set(wheel.project()["tool"]["setuptools"]["packages"])
+    assert packages == folders | {"tilt.web"}, packages ^ folders
 
 
 def said(tilt, folder, *words, path="", **more):
