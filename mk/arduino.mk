@@ -16,7 +16,7 @@ SKETCHES    := $(wildcard lib/filters/examples/*/*.ino)
 # what make test builds for it: without the core the sketches are skipped
 ARDUINO_IMAGES := $(LIBRARY).zip $(A)/libtiltfilters.so $(if $(ARDUINO_SRC),$(SKETCHES:lib/filters/examples/%.ino=$(A)/%.elf))
 
-$(LIBRARY).zip: $(LIBRARY_OF) mk/scripts/library.py
+$(LIBRARY).zip: $(LIBRARY_OF) mk/scripts/library.py mk/scripts/packed.py
 	@python3 mk/scripts/library.py $(@D)
 
 $(A)/core/%.c.o: $(ARDUINO_DIR)/%.c mk/arduino.mk

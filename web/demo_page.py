@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""demo_page.py HEX WORKER LICENCE AVR8JS_LICENCE OUT: the demo as one file: web/demo.html with its scripts, the image, the worker and the licences."""
+"""demo_page.py HEX WORKER LICENCE AVR8JS_LICENCE AVR_LIBC_LICENCE OUT: the demo as one file: web/demo.html with its scripts, the image, the worker and the
+licences."""
 import base64
 import html
 import pathlib
@@ -34,11 +35,11 @@ def filled(page, element, text):
 
 
 def main():
-    image, worker, ours, avr8js, out = map(pathlib.Path, sys.argv[1:])
+    image, worker, ours, avr8js, avr_libc, out = map(pathlib.Path, sys.argv[1:])
     page = whole("demo.html")
     page = filled(page, "image", base64.b64encode(flash_of(image.read_text(encoding="ascii"))).decode("ascii"))
     page = filled(page, "worker", worker.read_text(encoding="utf-8").replace("</script", "<\\/script"))
-    licences = (f"{name}\n\n{path.read_text(encoding='utf-8')}" for name, path in (("tilt-uno", ours), ("avr8js", avr8js)))
+    licences = (f"{name}\n\n{path.read_text(encoding='utf-8')}" for name, path in (("tilt-uno", ours), ("avr8js", avr8js), ("avr-libc", avr_libc)))
     page = filled(page, "licences", html.escape("\n".join(licences)))
     size = len(page.encode("utf-8"))
     if size > MOST_BYTES:

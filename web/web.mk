@@ -4,8 +4,8 @@ DEMO := $(B)/demo/tilt-demo.html
 $(W)/worker.js: web/pack.mjs web/package-lock.json second/package-lock.json $(wildcard web/worker/*.mjs) $(addprefix second/,adxl345.mjs board.mjs timer.mjs twowire.mjs uno.mjs varied.mjs)
 	@node web/pack.mjs $@
 
-$(DEMO): $(U)/firmware.hex $(W)/worker.js web/demo_page.py tools/tilt/whole_page.py $(wildcard web/*.html web/*.css web/*.js) LICENSE
-	@python3 web/demo_page.py $(U)/firmware.hex $(W)/worker.js LICENSE $(B)/second/node_modules/avr8js/LICENSE $@
+$(DEMO): $(U)/firmware.hex $(W)/worker.js web/demo_page.py tools/tilt/whole_page.py $(wildcard web/*.html web/*.css web/*.js) LICENSE mk/avr-libc.txt
+	@python3 web/demo_page.py $(U)/firmware.hex $(W)/worker.js LICENSE $(B)/second/node_modules/avr8js/LICENSE mk/avr-libc.txt $@
 
 ## demo: build build/demo/tilt-demo.html, a page that runs the firmware on a simulated UNO in a browser
 demo:

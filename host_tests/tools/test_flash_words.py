@@ -142,10 +142,12 @@ def image_that_does_not_fit_the_board_is_refused_before_avrdude_runs():
     done, typed = program(*FLASH, "uno", OUT / "torn.hex", AT, status=0)
     assert done.returncode == 2 and "torn.hex:2: not an Intel HEX record" in done.stderr and not typed, done.stderr
     whole = image_of(4096).read_text(encoding="ascii")
-    for wrong in (whole.replace(":10", ":20", 1), whole.replace("73746F70", "73746F71", 1), whole[:20]):  # length, a letter of "stop", cut
+    not_a_record = "torn.hex:1: not an Intel HEX record"
+    for wrong, words in ((whole.replace(":10", ":20", 1), not_a_record), (whole.replace("73746F70", "73746F71", 1), not_a_record),  # "stop"
+                         (whole[:20], not_a_record), (whole[:whole.rindex(":")], "has no last record, it is cut off"), ("", "has no last record"),
+                         (f":02000004FFFFFC\n{whole}", "torn.hex:2: address 0xFFFF0000 is beyond the flash of an ATmega328P")):
         (OUT / "torn.hex").write_text(wrong, encoding="ascii")
-        done, typed = program(*FLASH, "uno", OUT / "torn.hex", AT, status=0)
-        assert done.returncode == 2 and "torn.hex:1: not an Intel HEX record" in done.stderr and not typed, done.stderr
+        refused(flashing.TiltError, lambda: flashing.chosen("uno", OUT / "torn.hex"), words)
 
 
 @test
@@ -176,6 +178,27 @@ def a_board_that_does_not_answer_is_a_failure():
                                     (b"", uno, "is silent for 0 s at 115200 baud"), (b"", slow, "at 57600 baud")):
             with answering(text) as port:
                 refused(flashing.Failed, lambda port=port, board_=board_: flashing.banner(board_, port), words, "written and verified, but")
+
+
+@test
+def what_goes_wrong_after_writing_says_that_it_is_written():
+    done, typed = program(*FLASH, "uno", image_of(4096), AT, status=0)
+    words = f"written and verified, but its banner cannot be read: {AT}: No such file or directory"
+    assert done.returncode == 1 and typed and words in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
+@test
+def a_log_that_cannot_be_written_stops_nothing():
+    with mock.patch.dict(os.environ, PATH=f"{folder('bin')}:{os.environ['PATH']}"):
+        avrdude = OUT.resolve() / "bin/avrdude"
+        for script, words in (("echo one\necho two\nexit 1\n", "avrdude ended with status 1; avrdude's last line: two"),
+                              ("exit 1\n", "avrdude's last line: none")):
+            avrdude.write_text(f"#!/bin/sh\n{script}", encoding="ascii")
+            avrdude.chmod(0o755)
+            uno = flashing.boards.TABLE["uno"]
+            refused(flashing.Failed, lambda: flashing.written(uno, "x.hex", AT, None, pathlib.Path("/dev/null/log")), words)
+        avrdude.write_text("#!/bin/sh\n", encoding="ascii")
+        flashing.written(uno, "x.hex", AT, None, pathlib.Path("/dev/null/log"))
 
 
 @test

@@ -9,13 +9,13 @@ import pathlib
 import re
 import shutil
 import sys
-import zipfile
+
+import packed
 
 NAME = "tilt-filters"
 ROOT = pathlib.Path("lib/filters")
 SOURCES = (ROOT / "src", pathlib.Path("lib/tilt/src"), pathlib.Path("lib/machine/src"))
 VERSION = re.search(r'FIRMWARE_VERSION "(.*)"', pathlib.Path("firmware/console/version.h").read_text(encoding="ascii"))[1]
-ANY_TIME = (1980, 1, 1, 0, 0, 0)  # the earliest in a zip: equal sources give equal files
 
 
 def assemble(folder):
@@ -39,13 +39,7 @@ def after_name(path, name, line):
     path.write_text(text, encoding="utf-8")
 
 
-def pack(folder, archive):
-    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
-        for path in sorted(path for path in folder.rglob("*") if path.is_file()):
-            packed.writestr(zipfile.ZipInfo(str(path.relative_to(folder.parent)), ANY_TIME), path.read_bytes(), zipfile.ZIP_DEFLATED)
-
-
 if __name__ == "__main__":
     place = pathlib.Path(sys.argv[1])
     assemble(place / NAME)
-    pack(place / NAME, place / f"{NAME}.zip")
+    packed.zip_to(place / f"{NAME}.zip", packed.files(place, f"{NAME}/**/*"), packed.EARLIEST)

@@ -3,7 +3,7 @@
 
     release.py judge                                 the first section of CHANGELOG.md is the version's, and all is committed
     release.py pack FOLDER EPOCH ARGUMENTS DEMO LIBRARY SET-CLOCK=HEX...
-                                                     writes FOLDER again: images, demo, libraries, simulator, notes and SHA256SUMS
+                                                     writes FOLDER again: images, demo, libraries, simulator, licences, notes and SHA256SUMS
 
 EPOCH: the time that archives carry. ARGUMENTS: file with the compiler's arguments for the wheel's C. An image that fits no board of its clock is
 left out.
@@ -35,9 +35,12 @@ def judge():
     heading, found = changes()[0], []
     if heading != VERSION:
         found.append(f"CHANGELOG.md begins with '{heading}', the version in firmware/console/version.h is {VERSION}: rename one")
-    changed = subprocess.run(["git", "status", "--porcelain"], capture_output=True, text=True, check=True).stdout.splitlines()
-    if changed:
-        found.append(f"{len(changed)} files are not committed, such as {changed[0][3:]}")
+    status = subprocess.run(["git", "status", "--porcelain"], capture_output=True, text=True, check=False)
+    changed = status.stdout.splitlines()
+    if status.returncode != 0:
+        found.append(f"no git checkout ({status.stderr.splitlines()[0]}): make dist packs any tree")
+    elif changed:
+        found.append(f"not committed: {changed[0][3:]}" + (f" and {len(changed) - 1} more" if changed[1:] else ""))
     for sentence in found:
         print(f"release: {sentence}", file=sys.stderr)
     return 1 if found else 0
@@ -64,6 +67,8 @@ def notes(hexes):
 
 
 def pack(folder, epoch, arguments, demo, library, *named):
+    if not epoch.isdigit():
+        sys.exit(f"release: '{epoch}' is no time for the archives: give SOURCE_DATE_EPOCH=, seconds since 1970, where git has none")
     folder, hexes = pathlib.Path(folder), dict(word.split("=", 1) for word in named)
     hexes = {name: path for name, path in hexes.items() if boards_for(name, path)}
     shutil.rmtree(folder, ignore_errors=True)
@@ -75,6 +80,7 @@ def pack(folder, epoch, arguments, demo, library, *named):
     wheel.write(folder, VERSION, epoch, pathlib.Path(arguments).read_text(encoding="ascii"), hexes)
     simulator = packed.files(".", *SIMULATOR) | {"Makefile": pathlib.Path("mk/simrun/Makefile").read_bytes()}
     packed.tar_to(folder / f"simrun-{VERSION}.tar.gz", {f"simrun-{VERSION}/{name}": data for name, data in simulator.items()}, epoch)
+    (folder / "LICENSES.txt").write_bytes(b"\n".join(pathlib.Path(path).read_bytes() for path in ("LICENSE", wheel.AVR_LIBC)))
     (folder / "NOTES.md").write_text(notes(hexes), encoding="utf-8")
     sums = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in sorted(folder.iterdir())]
     (folder / "SHA256SUMS").write_text("".join(sums), encoding="ascii")

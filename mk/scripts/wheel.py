@@ -10,6 +10,7 @@ import packed
 
 PROJECT = pathlib.Path("tools/pyproject.toml")
 BESIDE = ("mk/images.mk", "mk/boards.txt", "mk/scripts/boards.py", "firmware/console/version.h")
+AVR_LIBC = pathlib.Path("mk/avr-libc.txt")  # what its licence wants beside images
 IMAGES = ("everyday", "small", "nav")  # tools/tilt/flashing.py chooses
 
 
@@ -41,7 +42,8 @@ def metadata(version):
              f"Requires-Python: {about['requires-python']}", *(f"Requires-Dist: {each}" for each in about["dependencies"])]
     scripts = "".join(f"{name} = {place}\n" for name, place in about["scripts"].items())
     return {"METADATA": "\n".join(lines) + "\n", "WHEEL": "Wheel-Version: 1.0\nGenerator: tilt-uno\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
-            "entry_points.txt": f"[console_scripts]\n{scripts}", "LICENSE": pathlib.Path("LICENSE").read_text(encoding="utf-8")}
+            "entry_points.txt": f"[console_scripts]\n{scripts}", "LICENSE": pathlib.Path("LICENSE").read_text(encoding="utf-8"),
+            "LICENSE-avr-libc": AVR_LIBC.read_text(encoding="utf-8")}
 
 
 def recorded(name, data):

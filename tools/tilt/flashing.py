@@ -1,4 +1,4 @@
-"""Writes an image to a board with avrdude, through its boot loader, and hears whether the firmware starts. `tilt flash` and make flash use it."""
+"""Writes an image to a board with avrdude, through its boot loader, and waits for the firmware's banner. `tilt flash` and make flash use it."""
 import os
 import pathlib
 import re
@@ -17,7 +17,8 @@ import boards  # noqa: E402
 
 PATTERNS = ("cu.usb*", "cu.wchusb*") if sys.platform == "darwin" else ("ttyACM*", "ttyUSB*", "serial/by-id/*")
 PACKED = pathlib.Path(__file__).with_name("images")  # in a wheel
-DATA, EXTENDED_SEGMENT, EXTENDED_LINEAR = 0, 2, 4  # records of Intel HEX
+DATA, END, EXTENDED_SEGMENT, EXTENDED_LINEAR = 0, 1, 2, 4  # records of Intel HEX
+MOST_BYTES = 1 << 20  # of a file that is read at all: 32 KB fit an ATmega328P
 OURS = b"stop\0go\0save\0load\0defaults\0"  # commands, in every image of the tilt firmware
 SILENT_S, GARBLED_S = 10.0, 1.0  # an old boot loader takes 2 s
 # avrdude's messages and their meaning, searched in this order, because it also prints "not in sync" for an attempt that succeeds when repeated.
@@ -32,6 +33,8 @@ FAILURES = (
     (r"not in sync|not responding|out of sync|protocol expects|initialization failed",
      "no boot loader answers at {port} with {baud} baud (not in sync): wrong PORT or BOARD; {instead}"),
 )
+FITTING = "leave --image out to write a set of filters that fits" if IN_WHEEL else "make flash BOARD={name} writes a set of filters that fits"
+ABSENT = "download it, or leave --image out" if IN_WHEEL else "build it with make firmware BOARD={name}, or download an image"
 INSTALL = ("avrdude is not installed: install it (Debian: apt install avrdude; macOS: brew install avrdude; Windows: the Arduino IDE has one; "
            "put it on PATH)")
 
@@ -69,27 +72,37 @@ def none_found(typed):
 
 def content(image):
     """The flash that an Intel HEX file fills, from 0 to its end."""
-    base, flash = 0, bytearray()
+    base, flash, kind = 0, bytearray(), None
     try:
         lines = image.read_text(encoding="ascii", errors="replace").split()
     except OSError as error:
         raise TiltError(f"{image}: {error.strerror}") from error
     for number, line in enumerate(lines, 1):
-        try:
-            data = bytes.fromhex(line.removeprefix(":"))
-            count, kind = data[0], data[3]
-            body = data[4:4 + count]
-        except (ValueError, IndexError):
-            count, data, body = 1, b"", b""
-        if line[:1] != ":" or len(body) != count or sum(data) & 0xFF:
+        address, kind, body = record(line)
+        if kind is None:
             raise TiltError(f"{image}:{number}: not an Intel HEX record: build it or download it again")
         if kind == DATA:
-            at = base + int.from_bytes(data[1:3], "big")
-            flash.extend(b"\xff" * (at + count - len(flash)))
-            flash[at:at + count] = body
+            at = base + address
+            if at + len(body) > MOST_BYTES:
+                raise TiltError(f"{image}:{number}: address 0x{at:X} is beyond the flash of an ATmega328P")
+            flash.extend(b"\xff" * (at + len(body) - len(flash)))
+            flash[at:at + len(body)] = body
         elif kind in (EXTENDED_SEGMENT, EXTENDED_LINEAR):
             base = int.from_bytes(body, "big") << (4 if kind == EXTENDED_SEGMENT else 16)
+    if kind != END:
+        raise TiltError(f"{image} has no last record, it is cut off: build it or download it again")
     return bytes(flash)
+
+
+def record(line):
+    """(address, kind, data) of a line of Intel HEX; its kind is None if it is not one."""
+    try:
+        data = bytes.fromhex(line.removeprefix(":"))
+    except ValueError:
+        data = b""
+    if line[:1] != ":" or len(data) < 5 or len(data) != data[0] + 5 or sum(data) & 0xFF:
+        return 0, None, b""
+    return int.from_bytes(data[1:3], "big"), data[3], data[4:-1]
 
 
 def navigation(flash):
@@ -111,15 +124,15 @@ def chosen(name, image):
     if name not in boards.TABLE:
         raise TiltError(f"no board '{name}': choose from {' '.join(boards.TABLE)}")
     board = boards.TABLE[name]
-    image = pathlib.Path(image) if image else default_image(board)
+    image = pathlib.Path(image) if image is not None else default_image(board)
     if not image.is_file():
-        raise TiltError(f"no {image}: build it with make firmware BOARD={name}, or download an image")
+        raise TiltError(f"no {image}: {ABSENT.format(name=name)}")
     flash = content(image)
     if len(flash) > board.flash:
         raise TiltError(f"{image} is {len(flash) - board.flash:,} bytes too large for {board.what} ({len(flash):,} where {board.flash:,} fit): "
-                        f"make flash BOARD={name} writes a set of filters that fits")
+                        f"{FITTING.format(name=name)}")
     if OURS not in flash and not navigation(flash):
-        raise TiltError(f"{image} is not an image of this firmware: avrdude itself writes others")
+        raise TiltError(f"{image} is not an image of this firmware: to write it, use avrdude itself")
     return board, image, len(flash), OURS in flash
 
 
@@ -138,22 +151,30 @@ def written(board, image, port, typed, log):
                               check=False)
     except FileNotFoundError as problem:
         raise Failed(INSTALL) from problem
-    try:
-        log.parent.mkdir(parents=True, exist_ok=True)
-        log.write_text(f"{shlex.join(command)}\n{done.stdout}", encoding="utf-8")
     except OSError as problem:
-        raise TiltError(f"{log}: {problem.strerror}") from problem
+        raise Failed(f"avrdude does not start: {problem.strerror}") from problem
+    where = kept(log, command, done.stdout)
     if done.returncode != 0:
         said = next((words.format(port=port, baud=board.baud, instead=instead(board, port, typed))
                      for pattern, words in FAILURES if re.search(pattern, done.stdout)), f"avrdude ended with status {done.returncode}")
-        raise Failed(f"{said}; avrdude's output: {log}")
+        raise Failed(f"{said}; avrdude's {where}")
+
+
+def kept(log, command, output):
+    """Where avrdude's output can be read. A log that cannot be written, such as another user's in /tmp, does not stop anything."""
+    try:
+        log.parent.mkdir(parents=True, exist_ok=True)
+        log.write_text(f"{shlex.join(command)}\n{output}", encoding="utf-8")
+    except OSError:
+        return f"last line: {(output.strip().splitlines() or ['none'])[-1]}"
+    return f"output: {log}"
 
 
 def heard(name, baud):
     """The banner's first line; None: the board sends what cannot be read at this rate, "": it is silent."""
     port, data, unreadable, until = Port(name, baud), b"", Unreadable(), time.monotonic() + SILENT_S
-    port.open()
     try:
+        port.open()
         while time.monotonic() < until:
             fresh = port.read()
             data += fresh
@@ -165,6 +186,8 @@ def heard(name, baud):
         return None if data else ""
     except Gone as why:
         raise Failed(f"written and verified, then {name} was gone ({why}): plug the board in again") from why
+    except TiltError as why:
+        raise Failed(f"written and verified, but its banner cannot be read: {why}") from why
     finally:
         port.close()
 
@@ -177,7 +200,8 @@ def banner(board, name):
         if found:
             return found
         if found == "":
-            raise Failed(f"written and verified, but the board is silent for {SILENT_S:.0f} s at {baud} baud: press its reset, look with a monitor")
+            raise Failed(f"written and verified, but the board is silent for {SILENT_S:.0f} s at {baud} baud: press its reset button, and look with "
+                         "a serial monitor")
     raise Failed("written and verified, but the board's output is not readable at any rate: is the image for a clock of "
                  f"{board.clock_hz // 1_000_000} MHz?")
 

@@ -85,7 +85,10 @@ def _compile(root):
                         "(Debian: apt install gcc libc6-dev; macOS: xcode-select --install)")
     try:
         (root / LIBRARY).parent.mkdir(parents=True, exist_ok=True)
-        done = subprocess.run([compiler, f"@{WHEELS}", "-o", str(LIBRARY)], cwd=root, capture_output=True, text=True, check=False)
+        made = LIBRARY.with_suffix(f".{os.getpid()}")  # another tilt may be compiling it too, or loading it
+        done = subprocess.run([compiler, f"@{WHEELS}", "-o", str(made)], cwd=root, capture_output=True, text=True, check=False)
+        if done.returncode == 0:
+            os.replace(root / made, root / LIBRARY)
     except OSError as error:
         raise TiltError(f"cannot compile the filters in {root}: {error.strerror}") from error
     if done.returncode != 0:

@@ -1,17 +1,19 @@
 """What make release packs: equal bytes whatever the files' times, the umask and the time zone; a wheel that installs and works without a compiler;
 and a refusal where the change log or the tree is not a release's."""
+import ast
 import hashlib
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
-import tarfile
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from system_support import OUT, Skip, run, run_all, test
 from laws import DEFAULT  # noqa: E402
 from library import VERSION  # noqa: E402
+import wheel  # noqa: E402
 
 PARTS = ("lib", "firmware", "hal", "sim", "tools", "web", "mk", "host_tests/tools/libtilt", "host_tests/support", "LICENSE", "CHANGELOG.md")
 EPOCH, VENV = "1700000000", pathlib.Path("build/venv")
@@ -49,7 +51,7 @@ def packed(root, umask=0o022, zone="UTC", **more):
 def packing_twice_gives_equal_bytes():
     root = tree("first")
     first = packed(root)
-    assert len(first) == 8 and f"tilt-uno-{VERSION}-everyday-16mhz.hex" in first, list(first)
+    assert len(first) == 9 and f"tilt-uno-{VERSION}-everyday-16mhz.hex" in first, list(first)
     assert not any("8mhz" in name for name in first if "16mhz" not in name), "an image that no board of its clock has room for"
     for path in root.rglob("*"):
         os.utime(path, (2e9, 2e9))
@@ -65,11 +67,28 @@ def installed(root):
     place = root / "venv"
     run(VENV / "bin/python", "-m", "venv", "--without-pip", place)
     (wheel,) = (root / "dist").glob("*.whl")
-    run(VENV / "bin/python", "-m", "pip", "--python", place / "bin/python", "install", "--no-deps", "--no-index", "-q", wheel)
+    run(VENV / "bin/python", "-m", "pip", "--python", place / "bin/python", "install", "--no-deps", "--no-index", "--no-compile", "-q", wheel)
+    names = {path.name for path in place.glob("lib/*/site-packages/*.dist-info/LICENSE*")}
+    assert names == {"LICENSE", "LICENSE-avr-libc"}, names  # the images contain parts of avr-libc
     (site,) = place.glob("lib/*/site-packages")
     (theirs,) = VENV.resolve().glob("lib/*/site-packages")
     (site / "dependencies.pth").write_text(f"{theirs}\n", encoding="utf-8")
     return place / "bin/tilt"
+
+
+@test
+def the_project_lists_what_is_imported_and_every_folder():
+    named = {"serial": "pyserial", "PIL": "pillow"}
+    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in pathlib.Path("tools/tilt").rglob("*.py")]
+    nodes = [node for each in trees for node in ast.walk(each)]
+    found = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    found |= {node.module for node in nodes if isinstance(node, ast.ImportFrom) and not node.level}
+    found = {name.split(".")[0] for name in found} - set(sys.stdlib_module_names) - {"tilt", "boards"}
+    listed = {re.match(r"\w+", each)[0] for each in wheel.project()["project"]["dependencies"]}
+    assert {named.get(name, name) for name in found} == listed, found
+    folders = {".".join(path.parent.parts[1:]) for path in pathlib.Path("tools/tilt").rglob("__init__.py")}
+    packages = set(wheel.project()["tool"]["setuptools"]["packages"])
+    assert packages == folders | {"tilt.web"}, packages ^ folders
 
 
 def said(tilt, folder, *words, path="", **more):
@@ -98,6 +117,8 @@ def the_wheel_works_without_a_compiler_and_with_one():
     assert status == 2 and "install gcc or clang" in err and err.count("\n") == 1, err
     status, _, err = said(tilt, folder, "nav")
     assert status == 2 and "run it in a checkout" in err and err.count("\n") == 1, err
+    image = f"tilt flash PORT --image tilt-uno-{VERSION}-nav-16mhz.hex\n"
+    assert said(tilt.with_name("python"), folder, "-c", "from tilt.navigation import boards; print(boards.NAVFLASH)") == (0, image, "")
     status, out, err = said(tilt, folder, "flash", "/dev/ttyUSB99")
     assert status == 1 and "tilt/images/everyday-16mhz.hex, " in out and "flash: avrdude is not installed" in err and err.count("\n") == 1, (out, err)
     (folder / "quick-cc").write_text('#!/bin/sh\nexec gcc "$@" -O0\n', encoding="ascii")
@@ -109,10 +130,18 @@ def the_wheel_works_without_a_compiler_and_with_one():
 
 
 @test
+def an_installation_without_sources_says_so():
+    bare = OUT.resolve() / "bare"
+    shutil.rmtree(bare, ignore_errors=True)
+    shutil.copytree("tools/tilt", bare / "lib/tilt", ignore=shutil.ignore_patterns("__pycache__"))
+    status, _, err = said(sys.executable, bare, "-B", "-m", "tilt", "--version", PYTHONPATH=str(bare / "lib"))
+    assert status == 1 and err.startswith("tilt: installed without its sources: ") and err.count("\n") == 1, err
+
+
+@test
 def the_simulator_builds_from_its_archive():
     root = OUT.resolve() / "first"
-    with tarfile.open(root / f"dist/simrun-{VERSION}.tar.gz") as archive:
-        archive.extractall(root, filter="data")
+    run("tar", "-xzf", root / f"dist/simrun-{VERSION}.tar.gz", "-C", root)  # tarfile's filter came with Python 3.11.4, Debian 12 has 3.11.2
     place = root / f"simrun-{VERSION}"
     run("make", "-s", "-C", place, "CFLAGS=-O0")
     stream = place / "sim/streams" / STREAM.name
@@ -125,8 +154,9 @@ def what_is_no_release_is_refused():
     root = tree("unready", ("mk", "firmware", "CHANGELOG.md"))
     log = root / "CHANGELOG.md"
 
-    def judged():
-        done = subprocess.run([sys.executable, "-B", "mk/scripts/release.py", "judge"], cwd=root, capture_output=True, text=True)
+    def judged(**more):
+        done = subprocess.run([sys.executable, "-B", "mk/scripts/release.py", "judge"], cwd=root, env={**os.environ, **more},
+                              capture_output=True, text=True)
         return done.returncode, done.stderr
 
     (root / ".gitignore").write_text("/build/\n", encoding="ascii")
@@ -140,7 +170,12 @@ def what_is_no_release_is_refused():
         found = judged()
         assert found[0] == status and words in found[1], found
     (root / "stray.c").write_text("", encoding="ascii")
-    assert "1 files are not committed, such as stray.c" in judged()[1]
+    assert "release: not committed: stray.c\n" in judged()[1]
+    status, err = judged(GIT_DIR="/nowhere")
+    assert status == 1 and "\nrelease: no git checkout (" in err and err.count("\n") == 2, err
+    done = subprocess.run([sys.executable, "-B", "mk/scripts/release.py", "pack", "dist", "", "a", "b", "c", "d=e"], cwd=root,
+                          capture_output=True, text=True)
+    assert done.returncode == 1 and done.stderr.startswith("release: '' is no time for the archives: ") and done.stderr.count("\n") == 1, done.stderr
     recipe = subprocess.run(["make", "-n", "release"], capture_output=True, text=True, check=True).stdout
     assert recipe.index("release.py judge") < recipe.index("check_pages.py --strict") < recipe.index("release.py pack"), recipe
 

@@ -57,7 +57,7 @@ class Bad(CommandCase):
             status, err = self.board(lambda board, data=data: board.send(data))
             self.assertEqual((status, self.path.exists()), (2, False))
             self.assertIn(reason, err)
-            self.assertIn("make flash", err)
+            self.assertIn("tilt flash", err)
 
     def test_a_board_that_says_who_it_is_and_then_nothing(self):
         with mock.patch.object(session_module, "BEGUN_S", 0.1), mock.patch("tilt.realboard.watch.ANSWER_S", 0.3):

@@ -24,7 +24,7 @@ from demo_support import PAGE, WHY_NOT, DemoCase  # noqa: E402
 MOST_BYTES = 250_000
 # what would load or send something
 OUTWARD = r"""(?:src|href)\s*=\s*["'](?!data:|#)[^"']+|\bimport\(|\bfetch\(|XMLHttpRequest|WebSocket|sendBeacon"""
-LICENCES = ("LICENSE", "build/second/node_modules/avr8js/LICENSE")
+LICENCES = ("LICENSE", "build/second/node_modules/avr8js/LICENSE", "mk/avr-libc.txt")
 STREAM = "t_us,x,y,z\n" + "".join(f"{10000 * n},{n % 3},{n % 5},{256 + n % 2}\n" for n in range(200))
 # name -> what is wrong with the text, as the page says it
 NO_RECORDINGS = {
@@ -68,7 +68,7 @@ def served():
 
 @unittest.skipIf(WHY_NOT, WHY_NOT)
 class TestFile(unittest.TestCase):
-    def test_one_file_that_loads_nothing_with_both_licences(self):
+    def test_one_file_that_loads_nothing_with_all_licences(self):
         text = PAGE.read_text(encoding="utf-8")
         self.assertLessEqual(len(text.encode("utf-8")), MOST_BYTES)
         self.assertIn("default-src 'none'", text)

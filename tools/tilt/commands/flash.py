@@ -29,7 +29,7 @@ def run(args):
         options = [word for name, value in words.items() if value for word in (name, value)]
         return shlex.join(["tilt", "flash", *([port or args.port] if port or args.port else []), *options])
 
-    if args.port is None:
+    if not args.port:
         return listed(flashing, typed)
     log = pathlib.Path(os.environ.get("FLASH_LOG", pathlib.Path(tempfile.gettempdir(), "tilt-flash.log")))
     try:

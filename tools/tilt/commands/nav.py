@@ -25,7 +25,7 @@ def arguments(parser):
     parser.add_argument("--set", action="append", default=[], metavar="NAME=N[,N...]", help="setting of the filter, overrides the file's")
     parser.add_argument("--fast", action="store_true", help="at a port: send records before they are due")
     parser.add_argument("-o", "--output", metavar="OUT.csv", help="file of states to write")
-    parser.add_argument("--plot", metavar="FILE.png", help="picture to write (default: build/nav.png if the truth is known)")
+    parser.add_argument("--plot", metavar="FILE.png", help="picture to write (default if the truth is known: build/nav.png; from a wheel nav.png)")
 
 
 def flight_of(args):
@@ -119,7 +119,7 @@ def show(args, flight, outcome):
     print("\n".join(judge.table(flight, found)))
     from tilt.navigation import boards, picture
 
-    path = args.plot or boards.ROOT / "build/nav.png"
+    path = args.plot or ("nav.png" if IN_WHEEL else boards.ROOT / "build/nav.png")
     what = {"sim": "in the simulated UNO", "pc": "on the PC"}.get(args.board, f"on the board at {args.board}")
     picture.draw(path, f"{args.states} states {what}, {flight.seconds:.0f} s", flight, found, outcome)
     print(f"{path}: written")

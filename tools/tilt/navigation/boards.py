@@ -10,12 +10,13 @@ from dataclasses import dataclass
 from tilt.errors import TiltError
 from tilt.navigation import frames
 from tilt.navigation.exchange import Outcome
+from tilt.place import IN_WHEEL, ROOT, VERSION
 from tilt.port import Gone, Port
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
 LOOK_S = 0.2
 GREETING_S = 4.0   # the boot loader takes 2 s
 SILENT_S = 1.0
+NAVFLASH = f"tilt flash PORT --image tilt-uno-{VERSION}-nav-16mhz.hex" if IN_WHEEL else "make navflash"
 MAKE_FIRST = "install what is missing with sh tools/deps.sh sim"
 
 
@@ -118,7 +119,7 @@ class Line:
         end, asked = time.monotonic() + GREETING_S, 0.0
         while not self.outcome.hellos or not self.outcome.answers:
             if time.monotonic() > end:
-                raise TiltError(f"{self.port.name}: no answer at {frames.BAUD} baud: write the navigation image with make navflash")
+                raise TiltError(f"{self.port.name}: no answer at {frames.BAUD} baud: write the navigation image with {NAVFLASH}")
             if time.monotonic() > asked + SILENT_S:
                 asked = time.monotonic()
                 self.write(b"\0" + frames.frame(frames.bare_record(255, "hello")))
@@ -126,7 +127,7 @@ class Line:
         hello = self.outcome.hellos[-1]
         if (hello.version, hello.states) != (frames.VERSION, self.states):
             raise TiltError(f"{self.port.name}: the board's image is version {hello.version} with {hello.states} states, "
-                            f"not {frames.VERSION} with {self.states}: make navflash, or --states {hello.states}")
+                            f"not {frames.VERSION} with {self.states}: {NAVFLASH}, or --states {hello.states}")
         self.window, self.sent = hello.window, self.taken
         self.outcome = Outcome(hellos=[hello])
 

@@ -36,10 +36,10 @@ def meet(bench, name):
 def what_came(strange):
     text = [seen.text for seen in strange if seen.kind == "strange" and seen.text.isascii() and seen.text.isprintable()]
     if text:
-        return f"text, but not from this firmware: '{max(text, key=len)[:LONGEST_SHOWN].strip()}'. Check the port; `make flash` writes it"
+        return f"text, but not from this firmware: '{max(text, key=len)[:LONGEST_SHOWN].strip()}'. Check the port; `tilt flash` writes it"
     if strange:
-        return "received bytes, but no text at any baud rate of this firmware. Check the port; `make flash` writes the firmware"
-    return f"nothing received in {MEET_S:.0f} s. Check the port, and whether the board has this firmware: `make flash` writes it"
+        return "received bytes, but no text at any baud rate of this firmware. Check the port; `tilt flash` writes the firmware"
+    return f"nothing received in {MEET_S:.0f} s. Check the port, and whether the board has this firmware: `tilt flash` writes it"
 
 
 def settle(bench, name):
