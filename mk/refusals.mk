@@ -1,0 +1,7 @@
+# What is refused before anything is built; tools/sim.sh and mk/scripts/misspelt.py refuse the rest.
+
+# a wrong name in FILTERS, before a port is looked for
+firmware flash: | $(U)/filters.txt
+
+# nothing is said of what is up to date
+sim: MAKE += -s
