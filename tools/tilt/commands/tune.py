@@ -109,13 +109,13 @@ def line_that(wanted, port, wait_s):
 
 
 def run(args):
-    from tilt import native, stream as streams
+    from tilt import Stream, native
 
     name = args.filter or native.filters()[0]
     if native.chosen(name) != [name]:
         raise TiltError(f"--filter {name}: give one filter")
     protocol.check_baud(args.baud)
-    stream = streams.read(args.stream)
+    stream = Stream.read(args.stream)
     answer, failed, say = measured(stream, name, native.rate_of(stream, args.rate)), [], (lambda text: None) if args.json else print
     say("\n".join(lines(answer)))
     if args.apply:
