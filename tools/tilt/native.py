@@ -105,8 +105,8 @@ def library(root=ROOT):
     loaded.libtilt_parameter.argtypes = [ctypes.c_int, ctypes.c_int, ctypes.c_uint16, ctypes.c_void_p]
     loaded.libtilt_row_per_tick.argtypes = [ctypes.c_void_p, ctypes.c_uint16]
     loaded.libtilt_replay.restype = ctypes.c_int64
-    loaded.libtilt_replay.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_uint16, ctypes.c_uint8, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p,
-                                      ctypes.c_int64]
+    loaded.libtilt_replay.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_uint16, ctypes.c_uint8, ctypes.c_void_p, ctypes.c_void_p,
+                                      ctypes.c_void_p, ctypes.c_int64]
     loaded.libtilt_axis.argtypes = [ctypes.c_int, ctypes.c_uint16, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_uint32, ctypes.c_bool,
                                     ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p]
     return loaded
@@ -189,7 +189,8 @@ def _replay_one(given, name, rate_dhz, range_g, out, values=None):
     rows = library().libtilt_replay(ctypes.byref(given.c), filters().index(name), rate_dhz, range_g, stored.ctypes.data, changed.ctypes.data,
                                     out.ctypes.data, len(out))
     if rows == -3:
-        raise TiltError(f"{name} refuses {', '.join(f'{key} {value:g}' for key, value in values.items())} : docs/protocol.md lists what goes together")
+        given = ", ".join(f"{key} {value:g}" for key, value in values.items())
+        raise TiltError(f"{name} refuses {given}: docs/protocol.md lists what goes together")
     if rows < 0:
         raise MemoryError("libtilt_replay: " + ("no memory" if rows == -2 else f"more rows than {len(out)}"))
     return rows
