@@ -59,6 +59,7 @@ LINES = (
     ("record FILE --seconds 0", "give a time"),
     ("record FILE --seconds 1_0", SEE), ("record FILE -o FILE", "--force"), ("record FILE -o no/where.csv", "no folder"),
     ("live FILE", "give one, such as"), ("nav missing", "No such file"), ("nav --states 7", "choose from 9, 12"),
+    ("start", SEE), ("start FILE -o FILE", "--force"), ("start FILE --baud 1", "choose from"),
     ("flight", SEE), ("flight OUT --seed x", SEE), ("board", "tilt board PORT"), ("board FILE --only foo", "--list prints them"),
     ("board --show missing", "No such file"), ("board --show FILE", "begins with"))
 RATES = "choose from 12.5 25 50 100 200 400 800"
