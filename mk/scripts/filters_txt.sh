@@ -1,5 +1,5 @@
 #!/bin/sh
-# filters_txt.sh FILE FILTER...: writes the filters of an image to its filters.txt, which is left alone if unchanged.
+# filters_txt.sh FILE FILTER...: writes the filters of an image to its filters.txt, which is left alone if unchanged; /dev/null: checks the names.
 set -eu
 file=$1
 shift
