@@ -22,7 +22,7 @@ import run_tests  # noqa: E402
 
 LIVE = ["test_resets", "test_flash", "test_plotter", "test_progress", "test_run_tests", "test_faults", "test_demo", "test_demo_page", "tilt_live",
         "tilt_live_direct", "tilt_board_played", "tilt_board_ports", "tilt_live_page", "tilt_live_parser", "tilt_live_rate", "tilt_nav_port",
-        "tilt_plot", "tilt_record", "tilt_record_timing", "system_tests:who_"]
+        "tilt_plot", "tilt_record", "tilt_record_sent", "tilt_record_timing", "tilt_start", "system_tests:who_"]
 DIE_WITH_PARENT = 1  # prctl's PR_SET_PDEATHSIG
 
 

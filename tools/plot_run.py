@@ -7,7 +7,6 @@
 comes from --served (what the sensor latched) or else from --stream, if they have roll_true_cdeg and pitch_true_cdeg;
 rows are matched with theirs by reading and time. Errors are wrapped; rows warming up or without a sample are not scored.
 """
-import argparse
 import json
 import sys
 from collections import Counter
@@ -18,6 +17,7 @@ try:
 
     from tilt import picture
     from tilt.angles import ANGLES, raw_angles_deg, wrapped_deg
+    from tilt.options import Parser
     from tilt.look import FILE_COLOURS, GATED_COLOUR, MISSING_BAND, RAW_COLOUR, TRUTH_COLOUR, WARMING_BAND
     from tilt.protocol import GATED, NO_SAMPLE, WARMING_UP, WRAP_US
 except ImportError as missing:
@@ -28,6 +28,7 @@ READING = ["x_lsb", "y_lsb", "z_lsb"]
 TRUTH = ["roll_true_cdeg", "pitch_true_cdeg"]
 OFFSET_BIN_US = 100       # clocks are aligned by the most frequent difference, with this resolution
 VOTING_ROWS = 400         # rows used for that
+FASTER = 1.05             # times the stream's rate: the sensor repeats readings
 MATCH_WINDOW_STEPS = 1.5  # a row's truth is at most this many rows away in time
 PICTURE_INCHES, PICTURE_DPI = (12.0, 7.0), 100
 
@@ -210,6 +211,17 @@ def percent(part, whole):
     return f"{100.0 * part / whole:.1f} %" if whole else "-"
 
 
+def repeats(stats, stream):
+    """The line about a sensor that samples faster than its stream has rows; nothing if it does not."""
+    steps_us = np.diff(unwrap_us(read_numbers(stream, ["t_us"])[0]["t_us"])) if stream else []
+    sensor_hz = stats.get("sensor_hz") or 0.0
+    if not len(steps_us) or sensor_hz <= FASTER * 1e6 / np.median(steps_us):
+        return []
+    stream_hz = 1e6 / np.median(steps_us)
+    return [f"the stream has {stream_hz:.4g} rows/s, the sensor took {sensor_hz:.4g}/s: it repeats each reading, so outliers come in a row and "
+            f"errors are larger than a real sensor's: give RATE={stream_hz:.3g} or less, or a faster stream"]
+
+
 def summary_lines(result, stats, cut):
     unscored = int(np.sum(result.warming | result.no_sample))
     known = [("samples served", "samples_served"), ("lost", "lost"), ("resets", "resets")]
@@ -273,7 +285,7 @@ def draw(result, title, png):
 
 
 def parse_arguments(arguments):
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = Parser(prog="plot_run", description=__doc__.splitlines()[0])
     parser.add_argument("--run", required=True, help="CSV sent by the firmware")
     parser.add_argument("--png", required=True, help="picture to write")
     parser.add_argument("--stream", help="CSV played by the sensor (for the truth, if --served has none)")
@@ -300,7 +312,7 @@ def main(arguments=None):
     except InputError as error:
         print(f"plot_run: {error}", file=sys.stderr)
         return 2
-    print("\n".join(summary_lines(result, stats, cut)))
+    print("\n".join(summary_lines(result, stats, cut) + repeats(stats, options.stream)))
     print(f"picture: {options.png}")
     return 0
 

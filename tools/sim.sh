@@ -1,5 +1,5 @@
 #!/bin/sh
-# sim.sh check STREAM OUT: checks that they can be read and written, before anything is built.
+# sim.sh check STREAM OUT: checks that they can be read and written, and RATE, if it was typed, before anything is built.
 # sim.sh IMAGE STREAM FILTER RATE OUT: one run of the firmware in the simulator, its summary and its picture.
 set -eu
 if [ "$1" = check ]; then
@@ -13,7 +13,11 @@ if [ "$1" = check ]; then
         echo "sim: no folder $folder for OUT=$3: mkdir -p $folder" >&2
         exit 2
     fi
-    exit 0
+    case ${RATE-100} in
+        12.5 | 25 | 50 | 100 | 200 | 400 | 800) exit 0 ;;
+    esac
+    echo "sim: RATE=$RATE: choose from 12.5 25 50 100 200 400 800" >&2
+    exit 2
 fi
 image=$1 stream=$2 filter=$3 rate=$4 out=$5
 base=${out%.csv}

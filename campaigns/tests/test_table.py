@@ -54,7 +54,8 @@ SCRIPTS = [
     plain("test_release", "flashtest_images", "build/library/tilt-filters.zip", "build/release/libtilt.args", "build/host/libtilt.so"),
     plain("test_arduino", "arduino_images"), plain("test_plotter", "system_images"), plain("test_compile_commands"),
     packages("test_nav_image", "build/sim/simrun", "nav_images"), packages("test_plot_run"), packages("test_robust", "build/host/pipeline_replay"),
-    packages("test_design"), packages("test_design_command"), packages("test_design_refusals"), packages("test_synthesised"),
+    packages("test_design"), packages("test_design_command"), packages("test_design_refusals"), packages("test_design_typed", "system_images"),
+    packages("test_synthesised"),
     packages("test_filter_pages"), packages("test_variable_structure"), packages("test_variable_structure_flight"),
     packages("test_variable_structure_page"), packages("test_demo", "system_images", "demo_built"), packages("test_demo_page", "demo_built"),
 ]

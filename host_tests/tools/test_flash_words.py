@@ -226,9 +226,10 @@ def the_only_port_is_taken_and_named():
 def where_no_port_or_several_are_there_it_says_what_to_type():
     several = folder("dev", ("ttyACM0", "/dev/null"), ("ttyUSB0", "/dev/zero"), ("serial/by-id/usb-Arduino-if00", "../../ttyACM0"))
     for target in ("flash", "monitor"):
-        options = ("FILTERS=a b", "BOARD=nano-old")
+        both = " ".join(images.HOLDS["small"])
+        options = (f"FILTERS={both}", "BOARD=nano-old")
         done, typed = program("make", target, *options, dev=several)
-        command = f"make {target} BOARD=nano-old FILTERS='a b' PORT={several}"
+        command = f"make {target} BOARD=nano-old FILTERS='{both}' PORT={several}"
         for line in (f"{target}: 2 serial ports found; type the line of your board's:", f"  {command}/ttyACM0   (usb-Arduino-if00)",
                      f"  {command}/ttyUSB0"):
             assert line in done.stderr.splitlines(), done.stderr

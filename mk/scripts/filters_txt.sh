@@ -1,5 +1,5 @@
 #!/bin/sh
-# filters_txt.sh FILE FILTER...: writes the filters of an image to its filters.txt, which is left alone if unchanged.
+# filters_txt.sh FILE FILTER...: writes the filters of an image to its filters.txt, which is left alone if unchanged; /dev/null: checks the names.
 set -eu
 file=$1
 shift
@@ -14,6 +14,6 @@ for filter in "$@"; do
 done
 [ $# -gt 0 ] || { echo "FILTERS is empty: choose from ${known% }, or one set: $sets" >&2; exit 2; }
 twice=$(printf '%s\n' "$@" | sort | uniq -d | tr '\n' ' ')
-[ -z "$twice" ] || { echo "FILTERS: named twice: ${twice% }" >&2; exit 2; }
+[ -z "$twice" ] || { echo "FILTERS: named twice: ${twice% }: name it once" >&2; exit 2; }
 mkdir -p "$(dirname "$file")"
 [ "$(cat "$file" 2> /dev/null)" = "$*" ] || echo "$*" > "$file"

@@ -8,7 +8,10 @@ import pathlib
 import sys
 from fractions import Fraction
 
+from tilt.options import Parser
+
 from . import configuration, nearest, pictures, report, switching
+from . import typed as typing
 from .given import Wrong, given_filter
 from .measure import sigma_of_stream
 from .response import Endless
@@ -53,8 +56,8 @@ def band_range(text):
 
 
 def parser():
-    words = argparse.ArgumentParser(prog="design", epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                    description="Structural and parametric synthesis of a polynomial smoothing filter (papers 000 and 001).")
+    words = Parser(prog="design", epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter,
+                   description="Structural and parametric synthesis of a polynomial smoothing filter (papers 000 and 001).")
     words.add_argument("-v", "--astatism", type=int, default=2, metavar="V", help="order of astatism (2)")
     words.add_argument("-k", type=int, default=None, help="order of A's factor (1; with --a: as many as given)")
     words.add_argument("-l", type=int, default=None, help="order of B (0; with --b: one less than given)")
@@ -251,14 +254,25 @@ def configured(name, f, task, lsb_per_unit, fixed_a):
     except configuration.Unfit as problem:
         return [f"{name}: none: {problem}"], {"structure": name, "none": str(problem)}, None
     noise, error = float(made.filter.noise_gain()), float(made.filter.dynamic_error())
-    lines, notes = configuration.commands(made, rate_hz)
+    on_board = typing.typed(made, rate_hz, task.error_max, noise_max)
+    lines = on_board.lines if on_board else []
+    notes = configuration.notes_of(made, rate_hz, lines) + made.notes
     text = [f"{name}:", f"    {made.initialiser()}",
             f"    as stored: {report_parameters(made)}; noise gain {noise:.7f}, dynamic error {error:.7g} per "
             f"{ordinal(made.filter.v)} difference" + (f" = {error * task.scale:.5g}" if task.scale else "")]
-    text += [f"    type: {line}" for line in lines] + [f"    note: {line}" for line in notes + made.notes]
+    text += [f"    type: {line}" for line in lines] + differs(made, on_board) + [f"    note: {line}" for line in notes]
     return text, {"structure": name, "filter": made.name, "fields": made.fields, "initialiser": made.initialiser(), "noise_gain": noise,
                   "dynamic_error": error, "a": [float(x) for x in made.filter.a], "b": [float(x) for x in made.filter.b],
-                  "commands": lines, "notes": notes + made.notes}, made
+                  "commands": lines, "notes": notes}, made
+
+
+def differs(made, on_board):
+    """The line about what the typed values make, if it is another filter."""
+    if on_board is None or on_board.filter == made.filter:
+        return []
+    f = on_board.filter
+    return [f"    as typed, in four decimals: noise gain {float(f.noise_gain()):.7f}, dynamic error {float(f.dynamic_error()):.7g} per "
+            f"{ordinal(f.v)} difference"]
 
 
 def limit_of_schedule(f, task, lsb_per_unit):

@@ -19,6 +19,7 @@ B0 = (656, 65535)
 A1 = (-65535, 65535)
 PLUS_K_MAX = 8
 Q = (1, 1_000_000_000)
+ONE_GAIN, TAPS = "synth", "synth_plus"
 # by the order of astatism: name, the field of its q and that field's power of the period
 KALMAN = {2: ("kf", "q_lsb2_s3", 3), 3: ("kf3", "q_lsb2_s5", 5)}
 THREE_FINE_FROM_DHZ = 1000  # the unit of the acceleration changes here
@@ -104,7 +105,7 @@ def stored_gain(f, common, error_max, noise_max, fixed_a=False):
             raise Unfit("no values in 1/65536 near the design keep the bound; nearest: a bound 0.1 % wider")
     fields = {"rate_dhz": common["rate_dhz"], "b0_uq16": chosen[0], "a1_q16": chosen[1], "r_lsb2_q8": common["r_lsb2_q8"],
               "rate_max_lsb_s": RATE_MAX_LSB_S}
-    return Configuration("synth", fields, gain_filter(*chosen))
+    return Configuration(ONE_GAIN, fields, gain_filter(*chosen))
 
 
 def plus_rho(k):
@@ -148,7 +149,7 @@ def stored_plus(f, common, error_max, noise_max):
         raise Unfit("no values in 1/65536 near the design keep the bound; nearest: a bound 0.1 % wider")
     fields = {"rate_dhz": common["rate_dhz"], "b0_uq16": chosen[0], "k": k, "b1_q16": chosen[1], "b2_q16": chosen[2],
               "r_lsb2_q8": common["r_lsb2_q8"]}
-    return Configuration("synth_plus", fields, made)
+    return Configuration(TAPS, fields, made)
 
 
 def stored_opt(f, common):
@@ -220,8 +221,7 @@ def stored_kf(f, common, error_max, noise_max):
     if not Q[0] <= q <= Q[1]:
         raise Unfit(f"{name} takes q from {Q[0]} to {Q[1]}, not {wanted / per_q:.4g}")
     fields = {"rate_dhz": common["rate_dhz"], "r_lsb2_q8": common["r_lsb2_q8"], field_name: q}
-    notes = ["the gain follows R, which the firmware estimates: it equals this one if the noise equals the given sigma"]
-    return Configuration(name, fields, steady_kalman(f.v, q * per_q), notes)
+    return Configuration(name, fields, steady_kalman(f.v, q * per_q))
 
 
 def drive_range(v, rate_dhz):
@@ -252,16 +252,15 @@ def image_with(name):
     return f"in no image as shipped: `make flash FILTERS={name}` builds one and writes it"
 
 
-def commands(configuration, rate_hz):
-    """(lines to type, notes on what they do not do)."""
-    lines = [f"filter {configuration.name}"]
-    notes = [f"these lines leave {' and '.join(n for n in configuration.fields if n != 'rate_dhz')} alone: `filter {configuration.name}` runs "
-             f"it with the values of filter_defaults (`settings` lists the parameters that the board takes, with their units); in "
-             f"a program of your own give the initialiser to filter_init with filter_law_{configuration.name}",
-             f"{configuration.name} is {image_with(configuration.name)}"]
-    if rate_hz in FIRMWARE_RATES_HZ:
-        lines.insert(0, f"rate {rate_hz:g}")
-    else:
-        nearest = min(FIRMWARE_RATES_HZ, key=lambda r: abs(math.log(r / rate_hz)))
-        notes.insert(0, f"the firmware samples at {', '.join(f'{r:g}' for r in FIRMWARE_RATES_HZ)} Hz, not at {rate_hz:g} Hz; nearest: {nearest:g}")
-    return lines, notes
+def notes_of(configuration, rate_hz, lines):
+    """What the lines to type do not say; lines: none if the board cannot run the configuration."""
+    notes = [f"{configuration.name} is {image_with(configuration.name)}; in a program of your own give the initialiser to filter_init with "
+             f"filter_law_{configuration.name}"]
+    if lines:
+        by_noise = configuration.name in [name for name, _, _ in KALMAN.values()]
+        return ["the gain follows R: `r` fixes it; leave that line out and the board estimates it"] * by_noise + notes
+    nearest = min(FIRMWARE_RATES_HZ, key=lambda r: abs(math.log(r / rate_hz)))
+    if rate_hz not in FIRMWARE_RATES_HZ:
+        return [f"nothing to type: the firmware samples at {', '.join(f'{r:g}' for r in FIRMWARE_RATES_HZ)} Hz, not at {rate_hz:g} Hz; "
+                f"nearest: --rate {nearest:g}"] + notes
+    return ["nothing to type: no order in which the board accepts the values, one after the other"] + notes

@@ -10,8 +10,12 @@ the filter goes on with the limit (0, 2/3), or (-1/6, 11/13) for u.
 """
 import argparse
 import math
+import pathlib
 import sys
 from collections import namedtuple
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+from tilt.options import Parser  # noqa: E402
 
 Step = namedtuple("Step", "a1 pe b0 p")  # pe, p in units of R
 
@@ -180,7 +184,7 @@ def count(text):
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="schedule", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(prog="design schedule", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--p0-over-r", type=positive,
                         help="variance of the initial error over that of the measurement, e.g. 8.33 (paper 000: 5 over 0.6)")
     parser.add_argument("--variant", choices=sorted(SCHEDULES), default="exact")
@@ -192,7 +196,7 @@ def main(arguments=None):
         sys.stdout.write(library_table())
         return 0
     if options.p0_over_r is None:
-        parser.error("--p0-over-r is missing: the schedule depends on it")
+        parser.error("--p0-over-r is missing: the schedule depends on it, such as --p0-over-r 8.33")
     write = single_table if options.emit == "c" else readable
     sys.stdout.write(write(options.variant, options.p0_over_r, options.steps))
     return 0

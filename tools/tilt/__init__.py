@@ -1,3 +1,14 @@
-"""The `tilt` command: work on ADXL345 recordings on the PC, one sub-command per job."""
+"""ADXL345 recordings on the PC: `import tilt` in Python (docs/python.md), and the command `tilt`, one sub-command per job."""
+import importlib
 
 ROBUST, PLAIN = "sprf", "kf"  # recordings are judged with these: one filter with a gate, one that accepts every reading
+
+# names of the Python interface, loaded when they are first used, so that `tilt --help` is quick
+OFFERED = {"Stream": "stream", "TiltError": "errors", "filters": "replaying", "parameters": "replaying", "replay": "replaying"}
+__all__ = list(OFFERED)
+
+
+def __getattr__(name):
+    if name not in OFFERED:
+        raise AttributeError(f"module 'tilt' has no attribute '{name}'")
+    return getattr(importlib.import_module(f"tilt.{OFFERED[name]}"), name)

@@ -1,6 +1,6 @@
 """`tilt`: finds its sub-commands in tilt.commands; turns their exceptions into one line and an exit status.
 
-Status: 0 done, 1 the answer is no (a failed comparison, unexpected lost rows), 2 a file or an option cannot be used, 130 Ctrl-C.
+Status: 0 done, 1 done, but rows are missing, a check failed or the board refused, 2 a file, an option or the port cannot be used, 130 Ctrl-C.
 """
 import argparse
 import importlib
@@ -10,23 +10,16 @@ import sys
 
 from tilt import commands
 from tilt.errors import TiltError
+from tilt.options import EXIT_UNUSABLE, Parser
 from tilt.place import VERSION
 
-EXIT_UNUSABLE, EXIT_INTERRUPTED = 2, 130
+EXIT_INTERRUPTED = 130
 
 
 def modules():
     """The sub-commands' modules by name."""
     found = [importlib.import_module(f"{commands.__name__}.{place.name}") for place in pkgutil.iter_modules(commands.__path__)]
     return {module.NAME: module for module in sorted(found, key=lambda module: module.NAME)}
-
-
-class Parser(argparse.ArgumentParser):
-    """Reports a wrong option in one line, as all else is reported."""
-
-    def error(self, message):
-        message = message.removeprefix("argument ")
-        self.exit(EXIT_UNUSABLE, f"{self.prog}: {message}{'' if 'choose from' in message else f': see {self.prog} --help'}\n")
 
 
 def parser_of(found):

@@ -51,9 +51,17 @@ class Parameter:
     high: float
     default: float
     step: float
+    zero_is_off: bool = False
+
+    def check(self, value: float) -> None:
+        """TiltError if the console refuses the value."""
+        if not (self.low <= value <= self.high or self.zero_is_off and value == 0):
+            raise TiltError(f"{self.name} {value:g}: {'0 or ' if self.zero_is_off else ''}{self.text(self.low)} to {self.text(self.high)}")
 
     def stored(self, value):
         """The value as the filter stores it, rounded to its step and limited to its range."""
+        if value == 0 and self.zero_is_off:
+            return 0
         return round(min(max(value, self.low), self.high) / self.step)
 
     def text(self, value):
@@ -120,7 +128,8 @@ def library(root=ROOT):
     loaded.libtilt_parameter.argtypes = [ctypes.c_int, ctypes.c_int, ctypes.c_uint16, ctypes.c_void_p]
     loaded.libtilt_row_per_tick.argtypes = [ctypes.c_void_p, ctypes.c_uint16]
     loaded.libtilt_replay.restype = ctypes.c_int64
-    loaded.libtilt_replay.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_uint16, ctypes.c_uint8, ctypes.c_void_p, ctypes.c_int64]
+    loaded.libtilt_replay.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_uint16, ctypes.c_uint8, ctypes.c_void_p, ctypes.c_void_p,
+                                      ctypes.c_void_p, ctypes.c_int64]
     loaded.libtilt_axis.argtypes = [ctypes.c_int, ctypes.c_uint16, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_uint32, ctypes.c_bool,
                                     ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p]
     return loaded
@@ -149,7 +158,8 @@ def parameters(name, rate_dhz):
     raw = _Parameter()
     while library().libtilt_parameter(kind, len(found), rate_dhz, ctypes.byref(raw)):
         step = 2.0 ** -raw.fraction_bits
-        found[raw.name.decode()] = Parameter(len(found), raw.name.decode(), raw.unit.decode(), raw.min * step, raw.max * step, raw.value * step, step)
+        found[raw.name.decode()] = Parameter(len(found), raw.name.decode(), raw.unit.decode(), raw.min * step, raw.max * step, raw.value * step, step,
+                                                 bool(raw.zero_means_off))
     return found
 
 
@@ -165,6 +175,14 @@ def rate_of(stream, asked_hz=None):
 
 
 # --- the sample path --------------------------------------------------------------------------------------------------
+
+
+def _arrays(every, values):
+    """(stored values, which are given) by the parameters' indices."""
+    stored, changed = np.zeros(32, np.int64), np.zeros(32, np.uint8)
+    for key, value in values.items():
+        stored[every[key].index], changed[every[key].index] = every[key].stored(value), 1
+    return stored, changed
 
 
 class _Input:
@@ -189,15 +207,21 @@ def _room(stream, rate_dhz):
     return int(np.sum(ticks)) + 16
 
 
-def _replay_one(given, name, rate_dhz, range_g, out):
-    rows = library().libtilt_replay(ctypes.byref(given.c), filters().index(name), rate_dhz, range_g, out.ctypes.data, len(out))
+def _replay_one(given, name, rate_dhz, range_g, out, values=None):
+    stored, changed = _arrays(parameters(name, rate_dhz) if values else {}, values or {})
+    rows = library().libtilt_replay(ctypes.byref(given.c), filters().index(name), rate_dhz, range_g, stored.ctypes.data, changed.ctypes.data,
+                                    out.ctypes.data, len(out))
+    if rows == -3:
+        given = ", ".join(f"{key} {value:g}" for key, value in values.items())
+        raise TiltError(f"{name} refuses {given}: docs/protocol.md lists what goes together")
     if rows < 0:
         raise MemoryError("libtilt_replay: " + ("no memory" if rows == -2 else f"more rows than {len(out)}"))
     return rows
 
 
-def replay(stream, names, rate_dhz, range_g=16, report=None):
-    """{filter: rows (ROW)} of the firmware's sample path over the recording, each from a cold start. report(done, all) as filters end.
+def replay(stream, names, rate_dhz, range_g=16, report=None, values=None):
+    """{filter: rows (ROW)} of the firmware's sample path over the recording, each from a cold start. report(done, all) as filters end. values:
+    {parameter: in its unit}, the others at their defaults.
 
     Two processes share the filters of a long recording, because the sample path keeps its state in static variables.
     """
@@ -209,9 +233,9 @@ def replay(stream, names, rate_dhz, range_g=16, report=None):
     mine, other = list(range(len(names))), []
     if len(stream) >= FORK_FROM_ROWS and len(names) > 1 and (os.cpu_count() or 1) > 1 and hasattr(os, "fork"):
         mine, other = _shares(names)
-    child = _in_child(lambda: [_into(given, names, i, rate_dhz, range_g, tables, counts) for i in other]) if other else None
+    child = _in_child(lambda: [_into(given, names, i, rate_dhz, range_g, tables, counts, values) for i in other]) if other else None
     for done, i in enumerate(mine, 1):
-        _into(given, names, i, rate_dhz, range_g, tables, counts)
+        _into(given, names, i, rate_dhz, range_g, tables, counts, values)
         if report:
             report(done * len(names) // len(mine), len(names))
     if child is not None and os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) != 0:
@@ -219,8 +243,8 @@ def replay(stream, names, rate_dhz, range_g=16, report=None):
     return {name: tables[i, :counts[i]] for i, name in enumerate(names)}
 
 
-def _into(given, names, i, rate_dhz, range_g, tables, counts):
-    counts[i] = _replay_one(given, names[i], rate_dhz, range_g, tables[i])
+def _into(given, names, i, rate_dhz, range_g, tables, counts, values):
+    counts[i] = _replay_one(given, names[i], rate_dhz, range_g, tables[i], values)
 
 
 def _shares(names):
@@ -286,9 +310,7 @@ def axis(name, rate_dhz, z_lsb, state, values=None, r_lsb2=None, noisy_axis=Fals
     """Probes (PROBE) of one axis after a filter. values: {parameter: in its unit}, the others at their defaults; R fixed, or None: estimated
     as the firmware does. TiltError if the filter rejects its parameters."""
     every = parameters(name, rate_dhz)
-    stored, changed = np.zeros(32, np.int64), np.zeros(32, np.uint8)
-    for key, value in (values or {}).items():
-        stored[every[key].index], changed[every[key].index] = every[key].stored(value), 1
+    stored, changed = _arrays(every, values or {})
     z_lsb, state = np.ascontiguousarray(z_lsb, np.int16), np.ascontiguousarray(state, np.uint8)
     out = np.zeros(len(z_lsb), PROBE)
     r_q8 = 0 if r_lsb2 is None else every["r"].stored(r_lsb2)

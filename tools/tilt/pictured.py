@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tilt import protocol, spectrum, stream
+from tilt import Stream, protocol, spectrum
 from tilt.angles import ANGLES, LSB_PER_G, raw_angles_deg
 from tilt.errors import TiltError
 
@@ -66,7 +66,7 @@ def load(path, from_s=None, to_s=None, progress=None):
     names = columns_in(path)
     suffixes = filters_in(names)
     extra = [name + end for end in suffixes for name in (*FILTERED.values(), *(("flags",) if end else ())) if name + end in names]
-    whole = stream.read(path, extra, progress)
+    whole = Stream.read(path, extra, progress)
     t_s = whole.t_us * 1e-6
     part = slice(*np.searchsorted(t_s, [-1.0 if from_s is None else from_s, np.inf if to_s is None else to_s]).tolist())
     if part.start >= part.stop:

@@ -51,6 +51,17 @@ class Stream:
     start_us: int
     columns: dict = field(default_factory=dict)
 
+    @classmethod
+    def read(cls, path, columns=(), progress=None) -> Stream:
+        """See the function."""
+        return read(path, columns, progress)
+
+    def frame(self):
+        """A pandas DataFrame, one row per row."""
+        import pandas as pd
+        truth = {name: getattr(self, name) for name in TRUTH} if self.has_truth else {}
+        return pd.DataFrame({TIME: self.t_us + self.start_us, **dict(zip(("x_lsb", "y_lsb", "z_lsb"), self.lsb.T)), FLAGS: self.flags, **truth})
+
     def __len__(self):
         return len(self.t_us)
 

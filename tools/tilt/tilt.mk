@@ -3,9 +3,15 @@ tilt:
 	@sh tools/deps.sh tilt
 	@echo "tilt: build/venv/bin/tilt --help"
 
-## pictures: take docs/live.png and the demo's pictures again, from the firmware as it is (1 minute; needs Chromium)
+ROBUST_AND_PLAIN = $(wordlist 2,3,$(FILTERS_everyday))
+## pictures: take the pictures of the pages again, from the firmware as it is (2 minutes; needs Chromium)
 pictures: $(U)/firmware.elf $(S)/simrun
 	@sh tools/deps.sh tilt
+	@$(MAKE) sim OUT=$(S)/outliers.csv
+	@cp $(S)/outliers.png docs/outliers.png
+	@cd $(S) && for filter in $(ROBUST_AND_PLAIN); do ../venv/bin/tilt replay $(CURDIR)/sim/streams/steps-outliers.csv --filter $$filter -o $$filter.csv; done
+	@cd $(S) && ../venv/bin/tilt plot $(ROBUST_AND_PLAIN:=.csv) --from 5 --to 20 --columns roll,flags,spectrum -o $(CURDIR)/docs/plot.png \
+	    --title "$(subst $() , and ,$(ROBUST_AND_PLAIN:=.csv)): the same readings"
 	@sh tools/deps.sh live
 	@$(PY) host_tests/tools/tilt/live_picture.py
 	@sh tools/deps.sh demo

@@ -68,10 +68,12 @@ int libtilt_row_per_tick(const libtilt_stream_t *in, uint16_t rate_dhz);
 
 /*
  * The recording through the firmware's sample path from a cold start, as simrun plays it to the board without faults
- * of bus and wiring. Returns the number of rows, -1 where room (in rows) is not enough, -2 without memory.
+ * of bus and wiring; the filter has its defaults but for values[i], as typed, of parameter i where changed[i] is not 0.
+ * Returns the number of rows, -1 where room (in rows) is not enough, -2 without memory, -3 where the firmware refuses
+ * the values.
  */
-int64_t libtilt_replay(const libtilt_stream_t *in, int kind, uint16_t rate_dhz, uint8_t range_g, libtilt_row_t *out,
-                       int64_t room);
+int64_t libtilt_replay(const libtilt_stream_t *in, int kind, uint16_t rate_dhz, uint8_t range_g, const int64_t *values,
+                       const uint8_t *changed, libtilt_row_t *out, int64_t room);
 
 /*
  * One axis through one filter: count samples, state 0 missing, 1 there, 2 at the rail. The filter has its defaults but

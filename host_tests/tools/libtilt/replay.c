@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/choice.h"
 #include "feed.h"
 #include "filter_list.h"
 #include "path/coast.h"
@@ -171,10 +172,28 @@ int libtilt_row_per_tick(const libtilt_stream_t *in, uint16_t rate_dhz)
     return make_feed(&stream, rate_dhz).mode == FEED_ROW_PER_TICK;
 }
 
-int64_t libtilt_replay(const libtilt_stream_t *in, int kind, uint16_t rate_dhz, uint8_t range_g, libtilt_row_t *out,
-                       int64_t room)
+/* False: the firmware refuses the parameters. */
+static bool choose(int kind, uint16_t rate_dhz, const int64_t *values, const uint8_t *changed)
+{
+    filter_choice_t *choice = &settings()->choice;
+    settings_take_filter((uint8_t)kind);
+    for (uint8_t i = 0; i < filter_parameter_count(choice_law(choice)); i++) {
+        if (changed[i]) {
+            choice->parameters[i] = (uint32_t)values[i];
+            choice->own |= (uint8_t)(1u << i);
+        }
+    }
+    return choice_legal(choice, rate_dhz);
+}
+
+int64_t libtilt_replay(const libtilt_stream_t *in, int kind, uint16_t rate_dhz, uint8_t range_g, const int64_t *values,
+                       const uint8_t *changed, libtilt_row_t *out, int64_t room)
 {
     stream_t stream;
+    settings_defaults();
+    if (!choose(kind, rate_dhz, values, changed)) {
+        return -3;
+    }
     if (!make_stream(&stream, in)) {
         return -2;
     }
@@ -187,10 +206,8 @@ int64_t libtilt_replay(const libtilt_stream_t *in, int kind, uint16_t rate_dhz, 
                         .row_per_tick = feed.mode == FEED_ROW_PER_TICK };
     silence_end();
     coast_wait(0);
-    settings_defaults();
     pipeline_reset();
     pipeline_calibrate(&settings()->calibration);
-    settings_take_filter((uint8_t)kind);
     pipeline_forget();
     pipeline_change(&settings()->choice, rate_dhz, range_g);
     pipeline_finish();

@@ -11,13 +11,13 @@ import misspelt  # noqa: E402
 from system_support import run_all, test
 
 HELP = re.compile(r"\b([A-Z][A-Z_]+)=")
+ALONE = {name: value for name, value in os.environ.items() if name not in ("MAKELEVEL", "MAKEFLAGS", "MFLAGS", "MAKEOVERRIDES")}
 
 
 def make(*arguments):
     """(status, what it prints to its error stream). A dry run: nothing is built. Not a part of the make that runs this test, which looks at
     what was typed itself."""
-    own = {name: value for name, value in os.environ.items() if name not in ("MAKELEVEL", "MAKEFLAGS", "MFLAGS", "MAKEOVERRIDES")}
-    done = subprocess.run(["make", "-n", *arguments], capture_output=True, text=True, check=False, env=own)
+    done = subprocess.run(["make", "-n", *arguments], capture_output=True, text=True, check=False, env=ALONE)
     return done.returncode, done.stderr
 
 
@@ -58,6 +58,18 @@ def what_cannot_be_read_or_written_is_refused_before_anything_is_built():
     rules = pathlib.Path("Makefile").read_text(encoding="utf-8")
     first = rules[rules.index("\nsim:\n"):].splitlines()[2]
     assert "tools/sim.sh check" in first, first
+
+
+@test
+def make_pictures_takes_every_picture_of_the_pages():
+    """Those of docs/results are written with their pages; a drawing (.svg) is no picture of the firmware."""
+    shown = {match for page in (pathlib.Path("README.md"), *pathlib.Path("docs").glob("*.md"))
+             for match in re.findall(r"!\[[^]]*\]\((?:docs/)?([\w/-]+\.png)\)", page.read_text(encoding="utf-8")) if not match.startswith("results/")}
+    taken = subprocess.run(["make", "-n", "pictures"], capture_output=True, text=True, check=False, env=ALONE).stdout
+    scripts = [pathlib.Path(name).read_text(encoding="utf-8") for name in re.findall(r"host_tests/\S+_picture\.py", taken)]
+    assert len(shown) >= 5 and len(scripts) >= 2, (shown, scripts)
+    missing = {name for name in shown if f"docs/{name}" not in taken + "".join(scripts)}
+    assert not missing, missing
 
 
 if __name__ == "__main__":

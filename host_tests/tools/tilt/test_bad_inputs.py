@@ -1,14 +1,20 @@
 #!/usr/bin/env python3
-"""A corpus of bad inputs to every command: each ends with status 2 and one line that names a remedy, never with a traceback, and leaves no file.
+"""A corpus of bad inputs to every command, to design, the simulator and make: each ends with its status and one line that names a remedy, never
+with a traceback, and leaves no file.
 Run from the repository root with build/venv/bin/python."""
 import gzip
+import os
 import pathlib
+import re
+import subprocess
 import sys
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-from laws import PLAIN, ROBUST  # noqa: E402
-from tilt_case import InFolder, run_tilt  # noqa: E402
+from laws import DEFAULT, PLAIN, ROBUST  # noqa: E402
+from tilt_case import InFolder, printed, run_tilt  # noqa: E402
+import plot_run  # noqa: E402
+from design import command as design_command  # noqa: E402
 
 ROWS = "".join(f"{10000 * i},{i % 3},{-i % 5},{256 + i % 2}\n" for i in range(40))
 STREAM, HEADER = "t_us,x,y,z\n" + ROWS, "t_us,x,y,z\n"
@@ -52,7 +58,50 @@ LINES = (
     ("record FILE", "give one, such as"), ("record missing", "port"), ("record FILE --baud 12345", "choose from"),
     ("record FILE --seconds 0", "give a time"),
     ("record FILE --seconds 1_0", SEE), ("record FILE -o FILE", "--force"), ("record FILE -o no/where.csv", "no folder"),
-    ("live FILE", "give one, such as"))
+    ("live FILE", "give one, such as"), ("nav missing", "No such file"), ("nav --states 7", "choose from 9, 12"),
+    ("start", SEE), ("start FILE -o FILE", "--force"), ("start FILE --baud 1", "choose from"),
+    ("flight", SEE), ("flight OUT --seed x", SEE), ("board", "tilt board PORT"), ("board FILE --only foo", "--list prints them"),
+    ("board --show missing", "No such file"), ("board --show FILE", "begins with"))
+RATES = "choose from 12.5 25 50 100 200 400 800"
+NAMES = f"choose from {DEFAULT} {PLAIN} {ROBUST}"
+SIMRUN = "simrun --fw build/uno/firmware.elf --in FILE --out /dev/null"
+DESIGN = "design --rate 100 --sigma 2"
+# (command line, status, what it says, the remedy included): programs besides tilt
+PROGRAMS = (
+    ("make sim RATE=abc", 2, f"sim: RATE=abc: {RATES}"), ("make sim RATE=90", 2, RATES), ("make sim RATE=100Hz", 2, RATES),
+    ("make sim RATE=", 2, RATES),
+    ("make sim STREAM=missing", 2, "give STREAM=file.csv"), ("make sim STREAM=", 2, "give STREAM=file.csv"),
+    ("make sim OUT=no/run.csv", 2, "mkdir -p "), ("make sim FILTER=foo", 2, f"filters: {DEFAULT}"),
+    ("make sim STREM=x.csv", 2, "did you mean STREAM?"),
+    ("make sim RTAE=50", 2, "did you mean RATE?"), ("make sim FILTRE=x", 2, "did you mean FILTER"), ("make help XYZZY=1", 2, "`make help` lists"),
+    ("make firmware FILTERS=foo", 2, NAMES), ("make firmware FILTERS=", 2, NAMES), ("make flash FILTERS=foo", 2, NAMES),
+    ("make firmware FILTERS=a,b", 2, NAMES), ("make firmware BOARD=mega", 2, "choose from uno nano"), ("make flash BOARD=", 2, "choose from uno"),
+    ("make size BOARD=x", 2, "choose from uno"), ("make t T=xyzzy", 2, "make t T=list"), ("make t", 2, "make t T=filters"),
+    ("simrun", 2, "simrun --help"), (f"{SIMRUN} --loop", 2, "give --max-ms"), (f"{SIMRUN} --max-ms abc", 2, "wants a number"),
+    (f"{SIMRUN} --fault foo", 2, "WHEN is 12.3ms"), (f"{SIMRUN} --fault 12ms:foo", 2, "simrun --help"), (f"{SIMRUN} --cmd foo", 2, "wants MS:TEXT"),
+    (f"{SIMRUN} --sensor bmp", 2, "is none of adxl345"), (SIMRUN.replace("FILE", "STRANGE"), 2, "tilt import FILE"),
+    ("plot_run --png OUT", 2, "see plot_run --help"), ("plot_run --run FILE", 2, "see plot_run --help"),
+    ("plot_run --run missing --png OUT", 2, "No such file"), ("plot_run --run FILE --png OUT", 2, "column x_mg is missing"),
+    ("design", 1, "nearest: --rate 100"), (DESIGN, 1, "nearest: --noise-gain"), ("design --rate x", 2, "see design --help"),
+    ("design --nope", 2, "see design --help"), ("design --rate 0 --sigma 2", 1, "nearest: 0.001"), (f"{DESIGN} --region foo", 2, "choose from"),
+    (f"{DESIGN} --noise-gain 0.4", 1, "nearest: --noise-gain"), (f"{DESIGN} --noise-gain 0.6 --a=x", 2, "see design --help"),
+    (f"{DESIGN} --error 2", 1, "nearest: --at 100"), (f"{DESIGN} --sigma-of FILE", 1, "either --sigma"),
+    (f"{DESIGN} --band b0", 2, "such as b0=0.5..1"),
+    ("design schedule", 2, "such as --p0-over-r 8.33"), ("design schedule --foo", 2, "see design schedule --help"),
+    ("design schedule --steps 0 --p0-over-r 1", 2, "must be 1..1000"))
+
+
+def ran(words):
+    """(status, stdout, stderr) of a command line; of make without the lines in which make itself reports that its rule failed."""
+    inside = {"design": design_command.main, "plot_run": plot_run.main}
+    if words[:1] and words[0] in inside:
+        return printed(inside[words[0]], words[1:])
+    if words[:1] not in (["make"], ["simrun"]):
+        return run_tilt(*words)
+    plain = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS"))}
+    command = ["make", *words[1:]] if words[0] == "make" else ["build/sim/simrun", *words[1:]]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=plain)
+    return done.returncode, done.stdout, re.sub(r"^make: \*\*\* \[.*\n", "", done.stderr, flags=re.M)
 
 
 class Case(InFolder):
@@ -60,25 +109,26 @@ class Case(InFolder):
         super().setUp()
         self.file = self.folder / "given.csv"
 
-    def refused(self, line, content, remedy):
+    def refused(self, line, content, remedy, status=2):
         self.file.write_bytes(content if isinstance(content, bytes) else content.encode())
         names = {"FILE": str(self.file), "DIR": str(self.folder), "no": str(self.folder / "no"), "OUT": str(self.folder / "out"),
                  "missing": str(self.folder / "missing")}
         words = []
         for word in line.split():
-            first = next((name for name in names if word == name or word.startswith((f"{name}.", f"{name}/"))), None)
-            words.append(names[first] + word.removeprefix(first) if first else word)
-        status, out, err = run_tilt(*words)
+            variable, _, value = word.rpartition("=")
+            first = next((name for name in names if value == name or value.startswith((f"{name}.", f"{name}/"))), None)
+            words.append(word if first is None else (f"{variable}=" if variable else "") + names[first] + value.removeprefix(first))
+        result, out, err = ran(words)
         with self.subTest(line, content=content[:40]):
-            self.assertEqual((status, out), (2, ""), err)
-            self.assertRegex(err, r"\Atilt[^\n]*: [^\n]+\n\Z")
+            self.assertEqual((result, out), (status, ""), err)
+            self.assertRegex(err, r"\A[^\n]*: [^\n]+\n\Z")
             self.assertIn(remedy, err)
             self.assertEqual([path.name for path in self.folder.iterdir()], [self.file.name])
 
 
 class Corpus(Case):
     def test_there_are_66_and_more(self):
-        self.assertGreaterEqual(len(STREAMS) * len(READERS) + len(IMPORTS) + len(LINES), 66)
+        self.assertGreaterEqual(len(IMPORTS) + len(LINES) + len(PROGRAMS), 66)
 
     def test_files_that_are_no_streams(self):
         for content, remedy in STREAMS:
@@ -88,6 +138,10 @@ class Corpus(Case):
     def test_files_that_cannot_be_imported(self):
         for content, options, remedy in IMPORTS:
             self.refused(f"import FILE -o OUT.csv {options}", content, remedy)
+
+    def test_other_programs(self):
+        for line, status, remedy in PROGRAMS:
+            self.refused(line.replace("STRANGE", "FILE"), IN_G if "STRANGE" in line else STREAM, remedy, status)
 
     def test_command_lines(self):
         for line, remedy in LINES:

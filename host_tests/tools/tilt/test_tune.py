@@ -131,6 +131,11 @@ class Fits(Case):
         self.assertEqual((values, reason), ({}, "better values for the whole are worse in a part of it"))
 
 
+class Words(unittest.TestCase):
+    def test_zero_has_no_minus_sign(self):
+        self.assertEqual([tune.percent(part) for part in (0.9999, 1.0, 0.658, 1.2)], ["+0.0 %", "+0.0 %", "-34.2 %", "+20.0 %"])
+
+
 class Commands(Case):
     def test_what_cannot_be_is_told(self):
         self.write(turned(np.random.default_rng(4), 60.0, 0.2)[0])

@@ -198,9 +198,9 @@ def interval(row):
 
 
 def run(args):
-    from tilt import native, stream as streams
+    from tilt import Stream, native
 
-    stream = streams.read(args.stream)
+    stream = Stream.read(args.stream)
     rate_dhz = native.rate_of(stream, args.rate)
     answer = judgement(stream, replay.replayed(stream, native.chosen(args.filter), rate_dhz), rate_dhz)
     if args.json:

@@ -13,7 +13,6 @@ from tilt.numbers import real_option, whole_option
 
 NAME = "replay"
 SUMMARY = "run a recording through the shipped filters, many at once"
-OWN = ("x_mg", "y_mg", "z_mg", "roll_cdeg", "pitch_cdeg", "flags")
 
 
 def stream_arguments(parser):
@@ -31,47 +30,21 @@ def arguments(parser):
     parser.add_argument("-o", "--output", metavar="OUT.csv", help="file of rows to write, - for standard output")
 
 
-def columns_of(tables):
-    """{column: numbers} of the rows of all filters, and the flags common to all."""
-    import numpy as np
-
-    found, alone = {}, len(tables) == 1
-    for name, rows in tables.items():
-        own = dict(zip(OWN, (*rows["mg"].T, rows["roll_cdeg"], rows["pitch_cdeg"], rows["flags"])))
-        found |= {column if alone else f"{column}_{name}": values for column, values in own.items()}
-    if not alone:
-        found["flags"] = np.bitwise_and.reduce([rows["flags"] for rows in tables.values()])
-    return found
-
-
-def truth_of(stream, rows):
-    """The truth columns for these rows; a prediction has that of the previous row."""
-    import numpy as np
-
-    if not stream.has_truth:
-        return {}
-    source = np.maximum.accumulate(rows["source"])
-    return {"roll_true_cdeg": stream.roll_true_cdeg[source], "pitch_true_cdeg": stream.pitch_true_cdeg[source]}
-
-
 def write(path, stream, tables, report):
-    from tilt import stream as streams
+    from tilt import replaying, stream as streams
 
     rows = next(iter(tables.values()))
-    streams.write("/dev/stdout" if path == "-" else path, rows["t_us"] + stream.start_us, rows["lsb"], columns=columns_of(tables),
-                  **truth_of(stream, rows), progress=report)
+    streams.write("/dev/stdout" if path == "-" else path, rows["t_us"] + stream.start_us, rows["lsb"], columns=replaying.columns_of(tables),
+                  **replaying.truth_of(stream, rows), progress=report)
 
 
 def replayed(stream, names, rate_dhz, range_g=16):
-    """native.replay with a progress bar; TiltError if there is no row."""
-    from tilt import native
+    """replaying.runs with a progress bar."""
+    from tilt import replaying
     from tilt.progress import bar
 
     with bar("filters", "filter") as report:
-        tables = native.replay(stream, names, rate_dhz, range_g, report)
-    if not len(tables[names[0]]):
-        raise TiltError(f"{stream.path}: no usable row: every row is missing or reads -1,-1,-1, like a sensor without power")
-    return tables
+        return replaying.runs(stream, names, rate_dhz, range_g, report)
 
 
 def share(flags, bit):
@@ -98,13 +71,13 @@ def checked_output(args):
 
 
 def run(args):
-    from tilt import native, stream as streams
+    from tilt import Stream, native
     from tilt.progress import bar
 
     names = native.chosen(args.filter)
     began = time.perf_counter()
     with bar("reading", "B") as report:
-        stream = streams.read(args.stream, progress=report)
+        stream = Stream.read(args.stream, progress=report)
     rate_dhz = native.rate_of(stream, args.rate)
     checked_output(args)
     tables = replayed(stream, names, rate_dhz, args.range)

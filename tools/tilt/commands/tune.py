@@ -59,6 +59,11 @@ def typed_in_order(name, rate_dhz, values):
     return None
 
 
+def percent(part):
+    """'+1.2 %' of a quotient; zero has no minus sign."""
+    return f"{round(100.0 * (part - 1.0), 1) + 0.0:+.1f} %"
+
+
 def lines(answer):
     noise = answer["noise_lsb"]
     at_rest = f"noise {' '.join(f'{axis:.2f}' for axis in noise)} LSB rms (x y z)" if noise else "no stretch at rest, so the noise is unknown"
@@ -66,10 +71,9 @@ def lines(answer):
             f"{answer['rest_seconds']:.1f} s at rest: {at_rest}; the board measures it itself"]
     if not answer["commands"]:
         return said + [f"keep the defaults of {answer['filter']}: {answer['reason']}"]
-    better = 100.0 * (answer["fitted_lsb"] / answer["default_lsb"] - 1.0)
     return said + [f"{answer['filter']}: {answer['default_lsb']:.2f} LSB rms from the smoothed recording with the defaults, "
-                   f"{answer['fitted_lsb']:.2f} ({better:+.1f} %) with these values",
-                   f"values chosen by three quarters of the recording change the fourth by {100.0 * (answer['held_back'] - 1.0):+.1f} %",
+                   f"{answer['fitted_lsb']:.2f} ({percent(answer['fitted_lsb'] / answer['default_lsb'])}) with these values",
+                   f"values chosen by three quarters of the recording change the fourth by {percent(answer['held_back'])}",
                    f"flash: {answer['flash']}", "", *answer["commands"]]
 
 
@@ -109,13 +113,13 @@ def line_that(wanted, port, wait_s):
 
 
 def run(args):
-    from tilt import native, stream as streams
+    from tilt import Stream, native
 
     name = args.filter or native.filters()[0]
     if native.chosen(name) != [name]:
         raise TiltError(f"--filter {name}: give one filter")
     protocol.check_baud(args.baud)
-    stream = streams.read(args.stream)
+    stream = Stream.read(args.stream)
     answer, failed, say = measured(stream, name, native.rate_of(stream, args.rate)), [], (lambda text: None) if args.json else print
     say("\n".join(lines(answer)))
     if args.apply:
