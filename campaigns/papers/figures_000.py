@@ -80,7 +80,8 @@ def draw(figure, what):
     rows, found = figure.subplots(3, 2, sharex=True), what["found"]
     draw_pair(rows[0], what, "Fig. 1: the roll as measured", [], None)
     draw_pair(rows[1], what, "Fig. 2: the synthesised filter",
-              [("printed", "gains by (22) as printed", PALE, 1.0), ("constant", f"a1 = {abs(found['a1']):g}, b0 = {found['b0']:g}", COLOURS["synth"], 1.6)],
+              [("printed", "gains by (22) as printed", PALE, 1.0),
+               ("constant", f"a1 = {abs(found['a1']):g}, b0 = {found['b0']:g}", COLOURS["synth"], 1.6)],
               table1.SYNTH_ROW)
     draw_pair(rows[2], what, "Fig. 3: the Kalman filter, N = 1", [("kalman", f"gain {found['kalman_alpha']:.2f}", COLOURS["kf"], 1.6)],
               table1.KALMAN_ROW)
@@ -93,6 +94,6 @@ def figures(runs):
               for interval, number, value in zip(INTERVALS, row, what["squares"][name])]
     beside += [(f"Fig. 2, {interval}, gains by (22) as printed, degree^2", "", f"{value:.3g}")
                for interval, value in zip(INTERVALS, what["squares"]["printed"])]
-    words = ("The roll of a UAV, and two filters on it. Roll, noise and gains are lost with the figures' data: these are the ones that the search for "
-             "Table 1 finds nearest, so the synthesised row is met by choice and the Kalman row is what comes of it.")
+    words = ("The roll of a UAV, and two filters on it. Roll, noise and gains are lost with the figures' data: these are the ones that\n"
+             "the search for Table 1 finds nearest, so the synthesised row is met by choice and the Kalman row is what comes of it.")
     return [Drawn("000-1-3", "Paper 000, Figs 1 to 3", 3, draw, what, __file__, words, beside)]

@@ -60,7 +60,8 @@ def figures(runs):
     beside = []
     for reading, short in zip(FACTORS, ("a t^2 / 2", "a t^2")):
         for (figure, _, _, sigma, lag), (_, _, ours, lagging) in zip(ROWS, what[reading]):
-            beside += [(f"{figure}, x = {short}, sigma, m", f"{sigma:g}", f"{ours:.3f}"), (f"{figure}, x = {short}, lag, m", f"{lag:g}", f"{lagging:.3f}")]
-    words = ("The error of an altitude that is straight to 20 s, accelerated to 35 s, braked to 50 s and straight again. Both Kalman filters are "
-             "solved for printed numbers: the first for its lag, the second for its sigma. Dashed: printed.")
+            beside += [(f"{figure}, x = {short}, sigma, m", f"{sigma:g}", f"{ours:.3f}"),
+                       (f"{figure}, x = {short}, lag, m", f"{lag:g}", f"{lagging:.3f}")]
+    words = ("The error of an altitude that is straight to 20 s, accelerated to 35 s, braked to 50 s and straight again. Both Kalman\n"
+             "filters are solved for printed numbers: the first for its lag, the second for its sigma. Dashed: printed.")
     return [Drawn("001-2-4", "Paper 001, Figs 2 to 4", 3, draw, what, __file__, words, beside)]

@@ -243,11 +243,14 @@ def figures(runs):
               f"{scenario} Kalman filter and pseudo-Bayesian filter.",
               [("Fig. 2b, samples at which the variances differ more than ten times", "some points", f"{100 * np.mean(ratio > 10):.0f} %")]),
         Drawn("002-3", "Paper 002, Fig. 3", 3, draw_3, (true, y, outlier, facts["af_grid"]), __file__,
-              "The adaptive filter learns q1 with the rest.", [("Fig. 3c, mean of q1 after 50 samples (0.85 in truth)", "very slowly", f"{q_late:.3f}")]),
-        Drawn("002-4", "Paper 002, Fig. 4", 1.5, draw_4, (facts["af_grid"]["density"],), __file__, "The distribution of q1 on the grid of 50 points."),
+              "The adaptive filter learns q1 with the rest.",
+              [("Fig. 3c, mean of q1 after 50 samples (0.85 in truth)", "very slowly", f"{q_late:.3f}")]),
+        Drawn("002-4", "Paper 002, Fig. 4", 1.5, draw_4, (facts["af_grid"]["density"],), __file__,
+              "The distribution of q1 on the grid of 50 points."),
         Drawn("002-5", "Paper 002, Fig. 5", 2, draw_5, (true[0], y[0], *(facts[name]["x"][0] for name in ("lrf", "shrf", "sprf"))), __file__,
               "The simplified filters on the run of Fig. 2."),
         Drawn("002-6", "Paper 002, Fig. 6", 3, draw_6, of_6, __file__, "Variances over 50 runs.", beside_6),
         Drawn("002-7", "Paper 002, Fig. 7", 2.2, draw_7, bands(curves), __file__,
-              f"K_ef at each sample, of {groups} experiments of 50 runs. Hatched: Table 2, its transient and its steady mode; the AF is the recursive one.",
+              f"K_ef at each sample, of {groups} experiments of 50 runs. Hatched: Table 2, its transient and its steady mode; the AF is the\n"
+              "recursive one.",
               beside_7(curves))]

@@ -12,7 +12,8 @@ DEGREE = 180.0 / np.pi
 NAMES = ("x, north", "y, east", "z, down")
 ANGLES = ("x, roll", "y, pitch", "z, heading")
 # file, title, arguments, printed bounds of the heading: (what of it, from, to, degrees, words)
-CASES = (("003-2-4", "Paper 003, Figs 3.2 to 3.4: 9 states, no drift", (9, "none", 1), (("largest", LOST, BACK, 1.0, "< 1"), ("rms", LOST, BACK, 0.5, "about 0.5"))),
+CASES = (("003-2-4", "Paper 003, Figs 3.2 to 3.4: 9 states, no drift", (9, "none", 1),
+          (("largest", LOST, BACK, 1.0, "< 1"), ("rms", LOST, BACK, 0.5, "about 0.5"))),
          ("003-5", "Paper 003, Fig. 3.5: 9 states, a drift of the gyro that they do not know", (9, "gyro", 1),
           (("largest", 40, LOST, 3.5, "3.5"), ("largest", LOST, BACK, 6.0, "6"))),
          ("003-6-8", "Paper 003, Figs 3.6 to 3.8: 12 states, drift of the gyro, 25 q", (12, "gyro", 25), (("largest", LOST, BACK, 2.0, "< 2"),)),
@@ -74,7 +75,8 @@ def figures(runs):
         errors = flown(arguments, flights)
         beside = [(f"{title.partition(': ')[0].removeprefix('Paper 003, ')}, {what} error of heading in {begin} to {end} s, degrees", said,
                    f"{heading_of(errors, what, begin, end):.2f}") for what, begin, end, _, said in printed]
-        words = f"{flights} flights: lines are the first, behind them the range of all. " + ("" if printed else "No number of these figures is readable. ")
+        words = f"{flights} flights: lines are the first, behind them the range of all. "
+        words += "" if printed else "No number of these figures is readable. "
         wanted = 1 if name == "003-5" else 3
         found.append(Drawn(name, title, 1.4 if wanted == 1 else 3, draw, (errors, printed, wanted), __file__,
                            words + "The reading of the case is ours: the figures' words are lost.", beside))

@@ -29,14 +29,15 @@ def flown(runs):
     rms = [float(np.sqrt(np.mean(np.square((which.estimates - flights.true)[:, 40:, 0])))) for which in (ours, *alone)]
     best = np.argmin(flights.sensor_error(), axis=2)
     chosen = np.argmax(ours.chosen, axis=2)
-    return {"degree": np.array(degrees)[:, RUN], "best": best[RUN], "chosen": chosen[RUN], "error": error(ours), "alone": [error(which) for which in alone],
-            "rms": rms, "hit": float(np.mean(chosen == best))}
+    return {"degree": np.array(degrees)[:, RUN], "best": best[RUN], "chosen": chosen[RUN], "error": error(ours),
+            "alone": [error(which) for which in alone], "rms": rms, "hit": float(np.mean(chosen == best))}
 
 
 def draw(figure, what):
     top, bottom = figure.subplots(2, 1, sharex=True)
     begins = WINDOW_S * np.arange(len(what["degree"]))
-    share = 100.0 * what["degree"] / np.maximum(np.sum(what["degree"], axis=1, keepdims=True), 1e-300)  # the first window has no estimate to begin from
+    whole = np.sum(what["degree"], axis=1, keepdims=True)
+    share = 100.0 * what["degree"] / np.maximum(whole, 1e-300)  # the first window has no estimate to begin from
     below = np.zeros(len(share))
     for number, (name, colour) in enumerate(zip(SENSORS, AXES)):
         top.bar(begins, share[:, number], WINDOW_S, below, align="edge", color=colour, alpha=0.75, ec="white", lw=0.6, label=name)
@@ -53,7 +54,8 @@ def draw(figure, what):
     for begin, chosen in zip(begins, what["chosen"]):
         bottom.axvline(begin, lw=0.6, color=GRID_COLOUR, zorder=0)
         bottom.annotate(SENSORS[chosen], (begin + WINDOW_S / 2, LEAST_M_S / 2.0), fontsize=6, ha="center", color=AXES[chosen])
-    panel(bottom, "Fig. 6: error with each sensor alone and with the sensor that is chosen (named below)", "time in seconds", "error of velocity in m/s")
+    panel(bottom, "Fig. 6: error with each sensor alone and with the sensor that is chosen (named below)", "time in seconds",
+          "error of velocity in m/s")
     bottom.set_ylim(LEAST_M_S / 2.5, 300.0)
     bottom.set_xlim(0, begins[-1] + WINDOW_S)
     legend(bottom, ncol=4)
@@ -66,5 +68,5 @@ def figures(runs):
                " / ".join(f"{value:.2f}" for value in what["rms"])),
               ("Fig. 6, windows in which the best sensor is chosen", ORDER, f"{100 * what['hit']:.0f} %")]
     return [Drawn("004-5-6", "Paper 004, Figs 5 and 6", 2.6, draw, what, __file__,
-                  "Three sensors whose troubles are drawn for each window of 20 s; the acceptor's gate, then the degree of observability, chooses with the "
-                  "window's own data, as the paper's Fig. 6 appears to.", beside)]
+                  "Three sensors whose troubles are drawn for each window of 20 s; the acceptor's gate, then the degree of observability,\n"
+                  "chooses with the window's own data, as the paper's Fig. 6 appears to.", beside)]

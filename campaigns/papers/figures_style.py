@@ -33,8 +33,8 @@ class Drawn:
     beside: list = field(default_factory=list)
 
     def picture(self):
-        return Picture(PICTURES / f"paper-{self.name}.png", self.title, (WIDTH, 0.5 + ROW * self.rows), lambda figure, data: self.draw(figure, data[0]),
-                       (self.data, STYLE), self.source, 0.985)
+        return Picture(PICTURES / f"paper-{self.name}.png", self.title, (WIDTH, 0.5 + ROW * self.rows),
+                       lambda figure, data: self.draw(figure, data[0]), (self.data, STYLE), self.source, 0.985)
 
 
 def panel(axes, title, x, y):
@@ -69,7 +69,8 @@ def printed_level(axes, span, levels, text=""):
 def printed_range(axes, span, low, high, text, above=True):
     """A hatched box: the range that the paper prints for a stretch of the axis."""
     axes.fill_between(span, low, high, facecolor="none", edgecolor=PRINTED_COLOUR, hatch="////", lw=1.0, alpha=0.55, gid=PRINTED, zorder=5)
-    axes.annotate(text, (span[0], high if above else low), xytext=(2, 3 if above else -10), textcoords="offset points", fontsize=TEXT, color=PRINTED_COLOUR, gid=PRINTED, zorder=7)
+    axes.annotate(text, (span[0], high if above else low), xytext=(2, 3 if above else -10), textcoords="offset points", fontsize=TEXT,
+                  color=PRINTED_COLOUR, gid=PRINTED, zorder=7)
 
 
 def printed_words(axes, x, y, text, **options):

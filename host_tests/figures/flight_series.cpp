@@ -1,4 +1,4 @@
-// flight_series STATES DRIFT WALK_SCALE SEED...: the errors of paper 003's flight in closed loop, a flight for each seed.
+// flight_series STATES DRIFT WALK_SCALE SEED...: errors of paper 003's flight in closed loop, a flight for each seed.
 //
 // STATES: 9 or 12; DRIFT: none, gyro or both; WALK_SCALE: on the printed q. The field at 1 Hz, nav/lib in float with
 // its queue. For each second a line: seed, second, true less computed roll, pitch, heading (rad), velocity (m/s),

@@ -123,9 +123,8 @@ TEST(correntropy_weighs_by_its_kernel)
 }
 
 /*
- * u = 0: R' = (4 + kept P11) / 5 with kept = R' / (1 + R'): 1/2 -> 0.9 -> (4 + 9/19) / 5 -> ... , and u = 0 stays 0. Far
- * off what is left is u kept: R' = (4 + u^2 / 4 + 1/2) / 5 after one step, and grows: next to nothing of u = 100 is
- * taken, about half of u = 1.
+ * u = 0 stays 0. Far off what is left is u kept: R' = (4 + u^2 / 4 + 1/2) / 5 after one step, and grows: next to
+ * nothing of u = 100 is taken, about half of u = 1.
  */
 TEST(student_takes_little_of_what_is_far)
 {

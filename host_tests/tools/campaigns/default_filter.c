@@ -5,7 +5,7 @@
  *
  * A job is a line: KEY PATH RATE_DHZ RANGE_G DIVIDE FROM_S TO_S truth|smooth SEEDS OUTLIER_SEEDS. The part FROM_S..TO_S
  * of a stream, DIVIDE rows averaged to one (support/smooth.h), goes at RATE_DHZ through every filter with its defaults
- * and every peer (those of robust_peers.h with kf's defaults and the firmware's noise estimate): once as it is, SEEDS times with each kind of fault, OUTLIER_SEEDS times with each kind of outliers.
+ * and every peer: once as it is, SEEDS times with each kind of fault, OUTLIER_SEEDS times with each kind of outliers.
  * `truth`: the reference is gravity at the attitude of the truth columns, else the clean stream smoothed both ways.
  *
  * A row: KEY,RATE_DHZ,FAULT,SEED,CONTENDER, then number of values and sums of squared differences from each reference,
@@ -15,10 +15,9 @@
 #include "support/faults.h"
 #include "support/outliers.h"
 #include "support/peers.h"
-#include "support/robust_peers.h"
+#include "support/robust_axis.h"
 #include "support/shipped.h"
 #include "support/smooth.h"
-#include "tracker.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -26,7 +25,9 @@
 #include <string.h>
 
 #ifdef PEER_FUSION /* make comparison, where its library is there */
-#include "chip/peers/fusion_pc.h"
+#include "comparison/fusion_pc.h"
+#else
+#include "comparison/fusion_none.h"
 #endif
 
 /* References: truth, or smoothed at these cuts, the first of which decides; behind them the own run without faults. */
@@ -37,11 +38,7 @@ enum { SMOOTHED = sizeof cut_hz / sizeof cut_hz[0], OWN = SMOOTHED, REFERENCES }
 #define ROBUST (CONTENDERS + (size_t)PEERS)
 #define RAW (ROBUST + (size_t)ROBUST_PEERS)
 #define FUSION (RAW + 1U)
-#ifdef PEER_FUSION
-#define ALL (FUSION + 1U)
-#else
-#define ALL (RAW + 1U)
-#endif
+#define ALL (RAW + 1U + FUSIONS)
 
 static const double lsb_per_g[] = { 265.0, 265.0, 256.0 }; /* of the streams */
 static const double bad_for_s = 0.5;
@@ -64,11 +61,8 @@ typedef struct {
     size_t contender;
     chain_t chain;
     peer_t peer;
-    robust_peer_t robust;
-    noise_t noise;
-#ifdef PEER_FUSION
+    robust_axis_t robust;
     fusion_t fusion;
-#endif
 } runner_t;
 
 typedef struct {
@@ -125,41 +119,19 @@ static bool references(bench_t *bench, const stream_t *whole)
 
 static char *const *only; /* names of the contenders that are asked for; NULL: all */
 
-/* Of kf at this rate: growth of the rate in a sample, LSB^2; and the variance of the rate at the start. */
-static void robust_begin(runner_t *runner, const job_t *job, int axis)
-{
-    static const double start_lsb_s = 200.0; /* as kalman.c */
-    const filter_config_t config = filter_defaults(&filter_law_kf, (uint16_t)job->rate_dhz);
-    double rate_hz = job->rate_dhz / 10.0;
-    double q = 0.0;
-    for (uint8_t i = 0; i < filter_parameter_count(&filter_law_kf); i++) {
-        if (filter_parameter(&filter_law_kf, i) == &filter_parameter_q) {
-            q = ldexp(config.value[i], -filter_parameter_q.fraction_bits) / (rate_hz * rate_hz * rate_hz);
-        }
-    }
-    filter_noise_init(&runner->noise, (uint16_t)job->rate_dhz, axis == 2);
-    robust_peer_begin(&runner->robust, (robust_kind_t)(runner->contender - ROBUST),
-                      filter_noise_r_lsb2_q8(&runner->noise) / 256.0, q, pow(start_lsb_s / rate_hz, 2.0));
-}
-
 static bool runner_begin(runner_t *runner, const job_t *job, size_t contender, int axis)
 {
     runner->contender = contender;
-#ifdef PEER_FUSION
     fusion_begin(&runner->fusion, (float)job->rate_dhz / 10.0f);
-#endif
-    if (contender >= RAW) {
-        return true;
+    if (contender < CONTENDERS) {
+        return contender_begin(&runner->chain, contender, (uint16_t)job->rate_dhz, (uint8_t)job->range_g, axis);
     }
-    if (contender >= ROBUST) {
-        robust_begin(runner, job, axis);
-        return true;
-    }
-    if (contender >= CONTENDERS) {
+    if (contender < ROBUST) {
         peer_begin(&runner->peer, (peer_kind_t)(contender - CONTENDERS), job->rate_dhz / 10.0);
-        return true;
+    } else if (contender < RAW) {
+        robust_axis_begin(&runner->robust, (robust_kind_t)(contender - ROBUST), (uint16_t)job->rate_dhz, axis);
     }
-    return contender_begin(&runner->chain, contender, (uint16_t)job->rate_dhz, (uint8_t)job->range_g, axis);
+    return true;
 }
 
 static double runner_lsb(runner_t *runner, const stream_row_t *row, int axis)
@@ -167,15 +139,11 @@ static double runner_lsb(runner_t *runner, const stream_row_t *row, int axis)
     if (runner->contender == RAW) {
         return row->lsb[axis];
     }
-#ifdef PEER_FUSION
     if (runner->contender == FUSION) {
         return fusion_gravity(&runner->fusion, row->lsb, axis) * lsb_per_g[axis];
     }
-#endif
     if (runner->contender >= ROBUST) {
-        (void)filter_noise_update(&runner->noise, row->lsb[axis]);
-        runner->robust.r = filter_noise_r_lsb2_q8(&runner->noise) / 256.0;
-        return robust_peer_sample(&runner->robust, row->lsb[axis]);
+        return robust_axis_sample(&runner->robust, row->lsb[axis]);
     }
     if (runner->contender >= CONTENDERS) {
         return peer_sample(&runner->peer, row->lsb[axis]);

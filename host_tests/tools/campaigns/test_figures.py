@@ -1,4 +1,4 @@
-"""make figures in small: every figure is drawn, has its axes' labels and what its paper prints; the page shows each, and has a row for each number."""
+"""make figures in small: every figure is drawn, has its axes' labels and what its paper prints; the page shows each, with its numbers."""
 import pathlib
 import sys
 
@@ -58,7 +58,10 @@ def every_figure_is_drawn_with_labels_and_printed_marks():
 
 @test
 def a_figure_without_label_or_mark_is_named():
-    bare = figures_style.Drawn("bare", "", 1, lambda figure, _: figures_style.panel(figure.subplots(), "", "time in seconds", "roll"), (), __file__, "")
+    def draw(figure, _):
+        figures_style.panel(figure.subplots(), "", "time in seconds", "roll")
+
+    bare = figures_style.Drawn("bare", "", 1, draw, (), __file__, "")
     assert save_small(bare)[1] == ["axes 0: the label of y is 'roll'", "nothing printed is marked"]
 
 

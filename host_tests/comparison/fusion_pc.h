@@ -9,6 +9,8 @@
 
 #include <stdint.h>
 
+#define FUSIONS 1U
+
 typedef struct {
     FusionAhrs ahrs;
 } fusion_t;
