@@ -17,18 +17,20 @@ try:
     import pictures
 except ImportError as missing:
     sys.exit(f"comparison: {missing.name} is missing: run make comparison, which installs it")
+import laws
 from comparison_filters import FUSION, NAMES, OURS, compared, words
 from default_score import CANDIDATE, geometric_mean
+from laws import PLAIN
 from papers_program import whole_number
 from results import FOLDER, Results, run_as_program, table
 
 PAGE_RUNS = 1000
 JSON = pathlib.Path("build/comparison.json")
-ABOUT = """
+ABOUT = f"""
 Ours as the firmware runs them, beside an exponential mean (EMA), the same behind a median or a Hampel filter, the 1-euro filter, Kalman filters with
 Huber's weight, with Student's t noise and with maximum correntropy, an interacting multiple model of three, and the accelerometer's path of
 [Fusion](https://github.com/xioTechnologies/Fusion) (its gyroscope at zero, settings as delivered). The peers are ours to write
-(`host_tests/support/peers.c`, `robust_peers.c`); the Kalman ones have `kf`'s defaults and are given the noise that the firmware's estimator gives.
+(`host_tests/support/peers.c`, `robust_peers.c`); the Kalman ones have `{PLAIN}`'s defaults and are given the noise that the firmware's estimator gives.
 [How this compares](../comparison.md) says what follows.
 """
 PAGE = Results(FOLDER / "comparison.md", "Ours beside other filters: results", "make comparison", ABOUT)
@@ -39,9 +41,9 @@ Root mean square error in LSB (256 per g): the table that decides the [default](
 first column is the geometric mean over the classes of the error by the default's. Fusion gives a direction, here times 1 g: forces beside gravity
 are its error too."""
 OF_SCENARIO = """\
-K_ef, mean square error of the Kalman filter that is told Table 1's noise over that of the filter, samples 201 to 400; more is better. `sprf`,
-`soft`, `pbf`, `kf` and the Kalman peers are told Table 1's noise; `adaptive` and the rest are not, and have their defaults for 40.5 Hz. Runs: an
-outlier follows an outlier with probability 0.8."""
+K_ef, mean square error of the Kalman filter that is told Table 1's noise over that of the filter, samples 201 to 400; more is better. The
+Kalman filters among ours and the peers are told Table 1's noise; the others, and the default, are not, and have their defaults for 40.5 Hz. Runs:
+an outlier follows an outlier with probability 0.8."""
 OF_TILT = """\
 Roll of 20 degrees to either side in 10 s, 100 Hz, noise 2 LSB; outliers of 20 times the noise, on each axis by itself. Error in degrees: rms /
 largest of 40 s, median over the runs."""
@@ -60,7 +62,8 @@ def number(value):
 
 def class_table(classes):
     fusion = [FUSION] if FUSION in classes["rest"] else []
-    order = [*OURS, *comparison_classes.BESIDE, *NAMES[len(OURS):], *fusion, "raw"]
+    best = {min(set(laws.names()) & set(found), key=found.get): None for found in classes.values()}
+    order = [*OURS, *(name for name in best if name not in OURS), *NAMES[len(OURS):], *fusion, "raw"]
     lines = []
     for name in order:
         values = [found[name] for found in classes.values()]

@@ -9,15 +9,15 @@ from comparison_filters import FUSION, OURS, PEERS, WEIGHED
 SUPPORT = pathlib.Path("host_tests/support").resolve()
 KINDS = dict(zip(PEERS, ("PEER_EMA_ALONE", "PEER_MEDIAN3_EMA", "PEER_MEDIAN_EMA", "PEER_HAMPEL_EMA", "PEER_EURO")))
 ROBUST = dict(zip(WEIGHED, ("ROBUST_HUBER", "ROBUST_STUDENT", "ROBUST_CORRENTROPY", "ROBUST_IMM")))
+OTHER = "../comparison/peer_other.c"
 OF_FUSION = Subject(FUSION, "", "../comparison/fusion.c", ("Fusion/Fusion",), ("Fusion/Fusion/FusionAhrs.c",))
 
 
 def subjects(peers):
     """Ours, the peers, and Fusion where it is there."""
     ours = [Subject(name, "", "peer_law.c", options=(f"-DPEER_LAW=filter_law_{name}",)) for name in OURS]
-    theirs = [Subject(name, "", "../comparison/peer_other.c", sources=(SUPPORT / "peers.c",), options=(f"-DPEER_KIND={kind}",)) for name, kind in KINDS.items()]
-    theirs += [Subject(name, "", "../comparison/peer_other.c", sources=(SUPPORT / "robust_peers.c",), options=(f"-DPEER_ROBUST={kind}",))
-               for name, kind in ROBUST.items()]
+    theirs = [Subject(name, "", OTHER, sources=(SUPPORT / "peers.c",), options=(f"-DPEER_KIND={kind}",)) for name, kind in KINDS.items()]
+    theirs += [Subject(name, "", OTHER, sources=(SUPPORT / "robust_peers.c",), options=(f"-DPEER_ROBUST={kind}",)) for name, kind in ROBUST.items()]
     return [*ours, *theirs, *([OF_FUSION] if (peers / OF_FUSION.folders[0]).is_dir() else [])]
 
 

@@ -12,7 +12,6 @@ from results import Fault, output_of
 
 JSON = pathlib.Path("build/default.json")
 PROGRAM = pathlib.Path("build/host/default_filter_fusion")
-BESIDE = ("synth_plus", "af")  # best in a class among ours, and not compared elsewhere
 
 
 @dataclasses.dataclass

@@ -7,12 +7,15 @@ from ctypes import c_double
 
 import numpy as np
 from figures_traces import library
-from laws import DEFAULT, PLAIN, ROBUST
+from laws import DEFAULT, PLAIN
+from resilience.filters import ENTRIES, MERGED
 from synthesis import batch
 from synthesis.batch import pointer
 
 FUSION, FUSION_LIBRARY = "fusion", pathlib.Path("build/papers/libfusion.so")
-OURS = (DEFAULT, ROBUST, "soft", "pbf", PLAIN)
+# of ours the default, the two that come back, the one that merges, and the Kalman filter
+RETURNING = tuple(name for name, entry in ENTRIES.items() if entry.reacquire)
+OURS = (DEFAULT, *RETURNING, MERGED, PLAIN)
 PEERS = ("ema", "median3_ema", "median5_ema", "hampel7_ema", "one_euro")  # in the order of peers.h
 WEIGHED = ("huber", "student_t", "correntropy", "imm3")                   # and of robust_peers.h
 NAMES = (*OURS, *PEERS, *WEIGHED)

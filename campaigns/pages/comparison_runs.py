@@ -1,9 +1,9 @@
 """What is measured on made samples: paper 002's scenario, tilt among outliers and bursts, and lag."""
 import numpy as np
-from comparison_filters import WEIGHED, compared, filtered, roll_of, weighed
+from comparison_filters import RETURNING, WEIGHED, compared, filtered, roll_of, weighed
 from figures_traces import realisations, reference
 from laws import PLAIN
-from resilience.filters import PERIOD_S, Q_RATE, R_DEG2, RATIO, Scenario
+from resilience.filters import ENTRIES, MERGED, PERIOD_S, Q_RATE, R_DEG2, RATIO, Scenario
 
 SEED = 2024
 
@@ -11,7 +11,7 @@ SEED = 2024
 
 SHARE, STAY = 0.15, 0.8  # outliers in all; probability that one follows another, in runs of five
 SCENARIOS = ("15 % outliers", "15 % in runs of five", "1 % outliers", "no outliers")
-TOLD = ("sprf", "soft", "pbf", PLAIN)  # ours that take the scenario's R and q; the references in double, which the shipped code equals
+TOLD = (*RETURNING, MERGED, PLAIN)  # ours that take the scenario's R and q; the references in double, which the shipped code equals
 DEGREES_PER_LSB, SAMPLES, FROM = 0.02, 400, 200
 START = (2.8, 0.008 * PERIOD_S, 0.7, 0.04 * PERIOD_S ** 2)
 
@@ -38,7 +38,7 @@ def scenario_runs(scenario, runs):
 def scenario_estimate(name, y, bad):
     """Degrees. Those with a model are told Table 1's; the others are as they are shipped, in counts of 0.02 degrees."""
     if name in TOLD:
-        return reference(name, y, bad.astype(float), gate_sigma=3.0, reacquire=name in ("sprf", "soft"))["x"]
+        return reference(ENTRIES[name].reference, y, bad.astype(float), gate_sigma=3.0, reacquire=name in RETURNING)["x"]
     if name in WEIGHED:
         return weighed(name, (R_DEG2, Q_RATE * PERIOD_S ** 2, START[3]), START, y)
     return DEGREES_PER_LSB * filtered(name, 1.0 / PERIOD_S, 1, y / DEGREES_PER_LSB, R_DEG2 / DEGREES_PER_LSB ** 2)

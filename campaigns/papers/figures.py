@@ -3,17 +3,14 @@
     figures.py [--runs N]      N: 500 for the page; with another number page and pictures are left alone, files go to build/figures
 """
 import argparse
+import importlib
 import pathlib
 import sys
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 try:
-    import figures_000
-    import figures_001
-    import figures_002
-    import figures_003
-    import figures_004
     import pictures
+    PARTS = [importlib.import_module(path.stem) for path in sorted(pathlib.Path(__file__).parent.glob("figures_00*.py"))]
 except ImportError as missing:
     sys.exit(f"figures: {missing.name} is missing: run make figures, which installs it")
 from papers_program import whole_number
@@ -34,7 +31,7 @@ NOT_DRAWN = (("001, Fig. 1; 002, Fig. 1; 004, Figs 1 to 4; 003, Figs 3.1, 4.1 to
 
 
 def all_figures(runs):
-    return [drawn for part in (figures_000, figures_001, figures_002, figures_003, figures_004) for drawn in part.figures(runs)]
+    return [drawn for part in PARTS for drawn in part.figures(runs)]
 
 
 def lines_of(drawn):

@@ -1,7 +1,7 @@
 """Figures 2 to 4 of paper 001: errors of altitude of the synthesised filter and of the Kalman filters of first and second order, by both readings of
 "a polynomial of second order"."""
 import numpy as np
-from figures_style import COLOURS, Drawn, legend, panel, printed_level, printed_words
+from figures_style import BLUE, GREEN, ORANGE, Drawn, legend, panel, printed_level, printed_words
 from pictures import RAW_COLOUR
 from synthesis import batch, paper_001
 from synthesis.estimators import steady_kalman, synthesised, white_acceleration, white_jerk
@@ -10,9 +10,9 @@ from synthesis.paper_001 import DOWN, FACTORS, PERIOD_S, SAMPLES, SIGMA_M, STRAI
 SEED = 2024
 TITLES = {"altitude_half_a_t2": "x = a t$^2$ / 2", "altitude_a_t2": "x = a t$^2$"}
 # figure, filter, colour, printed sigma on the straight legs and lag of the others
-ROWS = (("Fig. 2", "synthesised, a1 = -0.3, b0 = 0.1", COLOURS["synth"], 0.37, 0.9),
-        ("Fig. 3", "Kalman filter of first order", COLOURS["kf"], 0.3, 1.4),
-        ("Fig. 4", "Kalman filter of second order", COLOURS["pbf"], 0.45, 0.0))
+ROWS = (("Fig. 2", "synthesised, a1 = -0.3, b0 = 0.1", GREEN, 0.37, 0.9),
+        ("Fig. 3", "Kalman filter of first order", ORANGE, 0.3, 1.4),
+        ("Fig. 4", "Kalman filter of second order", BLUE, 0.45, 0.0))
 
 
 def estimators_of(reading):

@@ -10,9 +10,8 @@ from pictures import RAW_COLOUR, TRUTH_COLOUR, Picture, plain
 from results import PICTURES
 
 WIDTH, ROW = 10.0, 2.3  # inches: of a figure, of a row of panels
-COLOURS = {"synth": "#1b7f3b", "kf": "#e08e0b", "pbf": "#0b5394", "af": "#c0187a", "shrf": "#7a4fb5", "sprf": "#8a5a2b", "lrf": "#1b7f3b"}
-AXES = ("#0b5394", "#e08e0b", "#1b7f3b")  # of three axes or three sensors
-PALE = "#c0187a"
+GREEN, ORANGE, BLUE, PINK, VIOLET, BROWN = "#1b7f3b", "#e08e0b", "#0b5394", "#c0187a", "#7a4fb5", "#8a5a2b"
+AXES = (BLUE, ORANGE, GREEN)  # of three axes or three sensors
 PRINTED, PRINTED_COLOUR = "printed", "#111111"
 TEXT = 8
 STYLE = hashlib.sha256(pathlib.Path(__file__).read_bytes()).hexdigest()  # a picture drawn in another style is stale

@@ -1,6 +1,6 @@
 #include "support/robust_axis.h"
 
-#include "support/laws.h"
+#include "support/roles.h"
 #include "tracker.h"
 
 #include <math.h>
@@ -9,11 +9,12 @@
 
 void robust_axis_begin(robust_axis_t *of, robust_kind_t kind, uint16_t rate_dhz, int axis)
 {
-    const filter_config_t config = filter_defaults(&filter_law_kf, rate_dhz);
+    const filter_law_t *plain = filter_listed(plain_kind());
+    const filter_config_t config = filter_defaults(plain, rate_dhz);
     double rate_hz = rate_dhz / 10.0;
     double q = 0.0;
-    for (uint8_t i = 0; i < filter_parameter_count(&filter_law_kf); i++) {
-        if (filter_parameter(&filter_law_kf, i) == &filter_parameter_q) {
+    for (uint8_t i = 0; i < filter_parameter_count(plain); i++) {
+        if (filter_parameter(plain, i) == &filter_parameter_q) {
             q = ldexp(config.value[i], -filter_parameter_q.fraction_bits) / pow(rate_hz, 3.0);
         }
     }

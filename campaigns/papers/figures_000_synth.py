@@ -3,7 +3,7 @@ printed: these are the nearest to its Table 1 that the search of campaigns/synth
 import types
 
 import numpy as np
-from figures_style import COLOURS, PALE, Drawn, legend, panel, printed_words, readings, truth
+from figures_style import GREEN, ORANGE, PINK, Drawn, legend, panel, printed_words, readings, truth
 from synthesis import batch, table1
 from synthesis.estimators import scheduled, steady_gains, steady_kalman, synthesised, white_rate
 from synthesis.paper_000 import gains_of
@@ -80,10 +80,10 @@ def draw(figure, what):
     rows, found = figure.subplots(3, 2, sharex=True), what["found"]
     draw_pair(rows[0], what, "Fig. 1: the roll as measured", [], None)
     draw_pair(rows[1], what, "Fig. 2: the synthesised filter",
-              [("printed", "gains by (22) as printed", PALE, 1.0),
-               ("constant", f"a1 = {abs(found['a1']):g}, b0 = {found['b0']:g}", COLOURS["synth"], 1.6)],
+              [("printed", "gains by (22) as printed", PINK, 1.0),
+               ("constant", f"a1 = {abs(found['a1']):g}, b0 = {found['b0']:g}", GREEN, 1.6)],
               table1.SYNTH_ROW)
-    draw_pair(rows[2], what, "Fig. 3: the Kalman filter, N = 1", [("kalman", f"gain {found['kalman_alpha']:.2f}", COLOURS["kf"], 1.6)],
+    draw_pair(rows[2], what, "Fig. 3: the Kalman filter, N = 1", [("kalman", f"gain {found['kalman_alpha']:.2f}", ORANGE, 1.6)],
               table1.KALMAN_ROW)
 
 
