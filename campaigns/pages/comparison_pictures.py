@@ -73,5 +73,5 @@ def draw_classes(figure, lost):
     axes.axvline(1.0, lw=0.8, color=TRUTH_COLOUR)
     axes.set_yticks(range(len(groups)), groups)
     axes.set_ylim(len(groups) - 0.5, -0.5)
-    axes.set_xlim(0.0, 1.35 * max(ratios))
+    axes.set_xlim(0.0, 1.5 * max(ratios))
     plain(axes, f"rms error of {DEFAULT} by that of the best other, ratio", "class")
