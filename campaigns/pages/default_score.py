@@ -8,7 +8,8 @@ from default_streams import BAD_READS, BURSTS, CLASSES, MOTIONS, OUTLIERS
 from laws import DEFAULT, PLAIN
 from results import Fault
 
-NOT_FILTERS = (f"median5_{PLAIN}", "ema", "median5_ema", "hampel7_ema", "one_euro", "raw")  # shown beside the list's, never chosen
+# shown beside the list's, never chosen
+NOT_FILTERS = (f"median5_{PLAIN}", "ema", "median3_ema", "median5_ema", "hampel7_ema", "one_euro", "huber", "student_t", "correntropy", "imm3", "raw")
 CANDIDATE, NONE_PASSES = DEFAULT, "none"
 NEAR, MOST = 1.05, 1.25  # times the best: as good as it; the most that a default may have in any class
 NOT_JUDGED = "tuning, "  # before the class: what the defaults may be tuned with does not decide

@@ -1,5 +1,6 @@
 /* The filters that ours are compared with: each against values derived by hand. */
 #include "support/peers.h"
+#include "support/robust_peers.h"
 #include "support/test.h"
 
 #include <math.h>
@@ -85,4 +86,69 @@ TEST(one_euro_opens_with_the_slope)
     /* then a slope of 2/3 pi A, halfway to it from pi A: 5/6 pi A, a cut-off of 11/6 Hz, 11/17 of the last third */
     double x_lsb = 5.0 + (2.0 / 3.0 + 11.0 / 51.0) * step_lsb;
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, x_lsb, last_of(PEER_EURO, 2.0 * PI, z_lsb, 3));
+}
+
+/* Medians 0 0 0 0 9: one of three is not seen, the second is. */
+TEST(the_median_of_three_does_not_see_one)
+{
+    static const double z_lsb[] = { 0.0, 0.0, 0.0, 9.0, 9.0 };
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, last_of(PEER_MEDIAN3_EMA, HALF_HZ, z_lsb, 4));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 4.5, last_of(PEER_MEDIAN3_EMA, HALF_HZ, z_lsb, 5));
+}
+
+/*
+ * R = 1, no growth, P11 = 1 and a rate of 0 that is known: predicted P11 = 1, S = 2, so a sample off by u goes in by
+ * u / (1 + R'), where R' is 1 up to 1.345 standard deviations of sqrt 2 and then R' = |u| / sqrt 2 / 1.345.
+ */
+static double robust_step(robust_kind_t kind, double u)
+{
+    static const robust_state_t start = { 0.0, 0.0, 1.0, 0.0, 0.0 };
+    robust_peer_t peer;
+    robust_peer_begin(&peer, kind, 1.0, 0.0, 0.0);
+    robust_peer_from(&peer, &start);
+    return robust_peer_sample(&peer, u);
+}
+
+TEST(huber_takes_a_far_sample_in_part)
+{
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.9, robust_step(ROBUST_HUBER, 1.8));
+    double r = 20.0 / sqrt(2.0) / 1.345;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 20.0 / (1.0 + r), robust_step(ROBUST_HUBER, 20.0));
+}
+
+/* u = 6: 18 = 36 / 2 standard deviations squared, R' = exp(18 / 18) = e. */
+TEST(correntropy_weighs_by_its_kernel)
+{
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 6.0 / (1.0 + exp(1.0)), robust_step(ROBUST_CORRENTROPY, 6.0));
+}
+
+/*
+ * u = 0 stays 0. Far off what is left is u kept: R' = (4 + u^2 / 4 + 1/2) / 5 after one step, and grows: next to
+ * nothing of u = 100 is taken, about half of u = 1.
+ */
+TEST(student_takes_little_of_what_is_far)
+{
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, robust_step(ROBUST_STUDENT, 0.0));
+    TEST_ASSERT_TRUE(robust_step(ROBUST_STUDENT, 100.0) < 0.1);
+    double near = robust_step(ROBUST_STUDENT, 1.0);
+    TEST_ASSERT_TRUE_MESSAGE(near > 0.45 && near < 0.6, "of 1 about half");
+}
+
+/* A sample at 30 sigma is the bad model's; a hundred equal ones in a row are a motion, and are followed. */
+TEST(imm_ignores_one_and_follows_many)
+{
+    robust_peer_t peer;
+    double x = 0.0;
+    robust_peer_begin(&peer, ROBUST_IMM, 1.0, 0.01, 1.0);
+    for (int k = 0; k < 50; k++) {
+        (void)robust_peer_sample(&peer, 0.0);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.0, robust_peer_sample(&peer, 30.0));
+    for (int k = 0; k < 100; k++) {
+        x = robust_peer_sample(&peer, 30.0);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(3.0, 30.0, x);
+    for (robust_kind_t kind = (robust_kind_t)0; kind < ROBUST_PEERS; kind++) {
+        TEST_ASSERT_NOT_NULL(robust_peer_name(kind));
+    }
 }

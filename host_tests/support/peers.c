@@ -6,7 +6,7 @@
 
 #define TWO_PI 6.283185307179586
 
-static const char *const names[PEERS] = { "ema", "median5_ema", "hampel7_ema", "one_euro" };
+static const char *const names[PEERS] = { "ema", "median3_ema", "median5_ema", "hampel7_ema", "one_euro" };
 
 const char *peer_name(peer_kind_t kind)
 {
@@ -18,6 +18,7 @@ void peer_begin(peer_t *peer, peer_kind_t kind, double rate_hz)
     memset(peer, 0, sizeof *peer);
     peer->kind = kind;
     peer->rate_hz = rate_hz;
+    peer->weight = 1.0 - exp(-TWO_PI * PEER_EMA_HZ / rate_hz);
 }
 
 /* Of an even number the upper one of the middle. */
@@ -55,7 +56,7 @@ static double hampel(peer_t *peer, double z_lsb)
 
 static double ema(const peer_t *peer, double z_lsb)
 {
-    return peer->x_lsb + (1.0 - exp(-TWO_PI * PEER_EMA_HZ / peer->rate_hz)) * (z_lsb - peer->x_lsb);
+    return peer->x_lsb + peer->weight * (z_lsb - peer->x_lsb);
 }
 
 /* Weight of the first-order low pass of the 1-euro filter. */
@@ -75,6 +76,8 @@ static double euro(peer_t *peer, double z_lsb)
 static double cleaned(peer_t *peer, double z_lsb)
 {
     switch (peer->kind) {
+    case PEER_MEDIAN3_EMA:
+        return median_with(peer, z_lsb, PEER_SHORT_MEDIAN);
     case PEER_MEDIAN_EMA:
         return median_with(peer, z_lsb, PEER_MEDIAN);
     case PEER_HAMPEL_EMA:

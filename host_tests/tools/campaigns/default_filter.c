@@ -1,7 +1,7 @@
 /*
  * Runs every filter over the streams that make default asks for (campaigns/pages/default_filter.py makes the table).
  *
- *   default_filter < JOBS > ROWS.csv
+ *   default_filter [NAME...] < JOBS > ROWS.csv         NAME: only these contenders
  *
  * A job is a line: KEY PATH RATE_DHZ RANGE_G DIVIDE FROM_S TO_S truth|smooth SEEDS OUTLIER_SEEDS. The part FROM_S..TO_S
  * of a stream, DIVIDE rows averaged to one (support/smooth.h), goes at RATE_DHZ through every filter with its defaults
@@ -15,6 +15,7 @@
 #include "support/faults.h"
 #include "support/outliers.h"
 #include "support/peers.h"
+#include "support/robust_axis.h"
 #include "support/shipped.h"
 #include "support/smooth.h"
 
@@ -23,13 +24,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#ifdef PEER_FUSION /* make comparison, where its library is there */
+#include "comparison/fusion_pc.h"
+#else
+#include "comparison/fusion_none.h"
+#endif
+
 /* References: truth, or smoothed at these cuts, the first of which decides; behind them the own run without faults. */
 static const double cut_hz[] = { 5.0, 2.5, 10.0 };
 enum { SMOOTHED = sizeof cut_hz / sizeof cut_hz[0], OWN = SMOOTHED, REFERENCES };
 
-/* Behind the contenders of support/faults.h: the peers, and one that does nothing. */
-#define RAW (CONTENDERS + (size_t)PEERS)
-#define ALL (RAW + 1U)
+/* Behind the contenders of support/faults.h: the peers, one that does nothing, and a library that is not ours. */
+#define ROBUST (CONTENDERS + (size_t)PEERS)
+#define RAW (ROBUST + (size_t)ROBUST_PEERS)
+#define FUSION (RAW + 1U)
+#define ALL (RAW + 1U + FUSIONS)
 
 static const double lsb_per_g[] = { 265.0, 265.0, 256.0 }; /* of the streams */
 static const double bad_for_s = 0.5;
@@ -52,6 +61,8 @@ typedef struct {
     size_t contender;
     chain_t chain;
     peer_t peer;
+    robust_axis_t robust;
+    fusion_t fusion;
 } runner_t;
 
 typedef struct {
@@ -106,20 +117,33 @@ static bool references(bench_t *bench, const stream_t *whole)
 
 /* --- runs --- */
 
+static char *const *only; /* names of the contenders that are asked for; NULL: all */
+
 static bool runner_begin(runner_t *runner, const job_t *job, size_t contender, int axis)
 {
     runner->contender = contender;
-    if (contender >= CONTENDERS) {
-        peer_begin(&runner->peer, (peer_kind_t)(contender - CONTENDERS), job->rate_dhz / 10.0);
-        return true;
+    fusion_begin(&runner->fusion, (float)job->rate_dhz / 10.0f);
+    if (contender < CONTENDERS) {
+        return contender_begin(&runner->chain, contender, (uint16_t)job->rate_dhz, (uint8_t)job->range_g, axis);
     }
-    return contender_begin(&runner->chain, contender, (uint16_t)job->rate_dhz, (uint8_t)job->range_g, axis);
+    if (contender < ROBUST) {
+        peer_begin(&runner->peer, (peer_kind_t)(contender - CONTENDERS), job->rate_dhz / 10.0);
+    } else if (contender < RAW) {
+        robust_axis_begin(&runner->robust, (robust_kind_t)(contender - ROBUST), (uint16_t)job->rate_dhz, axis);
+    }
+    return true;
 }
 
 static double runner_lsb(runner_t *runner, const stream_row_t *row, int axis)
 {
     if (runner->contender == RAW) {
         return row->lsb[axis];
+    }
+    if (runner->contender == FUSION) {
+        return fusion_gravity(&runner->fusion, row->lsb, axis) * lsb_per_g[axis];
+    }
+    if (runner->contender >= ROBUST) {
+        return robust_axis_sample(&runner->robust, row->lsb[axis]);
     }
     if (runner->contender >= CONTENDERS) {
         return peer_sample(&runner->peer, row->lsb[axis]);
@@ -129,10 +153,23 @@ static double runner_lsb(runner_t *runner, const stream_row_t *row, int axis)
 
 static const char *runner_name(size_t contender)
 {
-    if (contender == RAW) {
-        return "raw";
+    if (contender >= RAW) {
+        return contender == RAW ? "raw" : "fusion";
+    }
+    if (contender >= ROBUST) {
+        return robust_peer_name((robust_kind_t)(contender - ROBUST));
     }
     return contender < CONTENDERS ? contender_name(contender) : peer_name((peer_kind_t)(contender - CONTENDERS));
+}
+
+static bool wanted(size_t contender)
+{
+    for (char *const *name = only; name != NULL && *name != NULL; name++) {
+        if (strcmp(*name, runner_name(contender)) == 0) {
+            return true;
+        }
+    }
+    return only == NULL || *only == NULL;
 }
 
 static bool own_run(bench_t *bench, size_t contender, int axis)
@@ -155,7 +192,7 @@ static bool own_runs(bench_t *bench)
     bool good = true;
     for (size_t contender = 0; contender < ALL; contender++) {
         for (int axis = 0; axis < 3; axis++) {
-            good = good && own_run(bench, contender, axis);
+            good = good && (!wanted(contender) || own_run(bench, contender, axis));
         }
     }
     return good;
@@ -212,6 +249,9 @@ static void one_run(const bench_t *bench, const faulty_t *faulty, const char *fa
 {
     for (size_t contender = 0; contender < ALL; contender++) {
         sums_t sums[2] = { { 0 }, { 0 } };
+        if (!wanted(contender)) {
+            continue;
+        }
         for (int axis = 0; axis < 3; axis++) {
             one_axis(bench, faulty, contender, axis, sums);
         }
@@ -341,8 +381,9 @@ static bool read_job(job_t *job, const char *line)
     return fields == 10 && range && job->divide >= 1 && job->rate_dhz >= 50 && job->rate_dhz <= 40000;
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    only = argv + (argc > 0 ? 1 : 0);
     char line[1024];
     while (fgets(line, sizeof line, stdin) != NULL) {
         job_t job = { .range_g = 0 };
