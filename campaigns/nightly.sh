@@ -17,7 +17,7 @@ judged=''
 commit_now() {
     local found
     found=$(git rev-parse --short=8 HEAD 2> /dev/null) || { echo 'no git'; return; }
-    [ -z "$(git status --porcelain -- . ':!docs/results' ':!docs/papers.md')" ] || found+=+
+    [ -z "$(git status --porcelain -- . ':!docs/results')" ] || found+=+
     echo "$found"
 }
 
