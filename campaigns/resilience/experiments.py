@@ -161,9 +161,10 @@ def clean_data(options):
 def printed_readings(options):
     filters = [in_double(name) for name in (PLAIN, *READINGS)]
     for experiment, scenario in (("printed", Scenario()), ("printed_first_sample_clean", Scenario(first_clean=True))):
-        squares, *_ = scored(filters, scenario, seeds_of(options.seed, options.runs))
+        squares, _, variances = scored(filters, scenario, seeds_of(options.seed, options.runs))
         for metric in ("k_ef_steady", "k_ef_pooled_1_60"):
             yield from ratio_rows(experiment, filters, squares, metric, metric, options)
+        yield from pointwise_rows(experiment, filters, variances, options)
 
 
 def wrong_r(options):

@@ -172,7 +172,9 @@ def scored(filters, scenario, seeds):
                           pointer(locked), pointer(errors))
         squares[:, :, begin:begin + GROUP] = found
         variances += [errors.var(axis=1)] if len(part) == GROUP else []
-    return squares, locked, np.array(variances)
+    variances = np.array(variances)
+    variances[variances == 0.0] = np.inf  # all at the bound of contest.cpp: as wrong as can be
+    return squares, locked, variances
 
 
 def shares(filters, scenario, seeds):
