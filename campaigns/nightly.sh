@@ -8,7 +8,7 @@ who=nightly
 . campaigns/steps.sh || exit 1
 
 # variables of the command line and the environment must not make a step smaller
-unset MAKEFLAGS MAKEOVERRIDES MFLAGS SAMPLE ONLY RUNS CHANGED BREAKAGES PLANTED PART PROFILES PATIENCE STOP_AFTER RECORDINGS
+unset MAKEFLAGS MAKEOVERRIDES MFLAGS SAMPLE ONLY RUNS PAPER_SEED CHANGED BREAKAGES PLANTED PART PROFILES PATIENCE STOP_AFTER RECORDINGS
 only=${STEPS:-}
 unset STEPS
 judged=''
@@ -17,7 +17,7 @@ judged=''
 commit_now() {
     local found
     found=$(git rev-parse --short=8 HEAD 2> /dev/null) || { echo 'no git'; return; }
-    [ -z "$(git status --porcelain -- . ':!docs/results' ':!docs/papers.md')" ] || found+=+
+    [ -z "$(git status --porcelain -- . ':!docs/results')" ] || found+=+
     echo "$found"
 }
 

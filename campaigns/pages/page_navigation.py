@@ -21,7 +21,7 @@ COLUMNS = ["", *(f"{states} states" for states in STATES)]
 ABOUT = f"""\
 {SECONDS} s of the flight of paper 003 (section 3.4) in the simulated ATmega328P at 16 MHz: IMU at 100 Hz, field at 10 Hz, GPS and altimeter at 1 Hz,
 no GPS from 160 to 400 s. `make navcheck` fails when a state or variance differs from the PC's in any bit, a record is lost, or a limit is broken.
-What the image is: [navigation](../navigation.md). Sigmas and errors beside the thesis: [paper 003](../papers.md)."""
+What the image is: [navigation](../navigation.md). Sigmas and errors beside the thesis: [paper 003](../papers-003.md)."""
 PAGE = Results(DOCUMENT, "The navigation image", "make navcheck", ABOUT)
 
 OF_IMAGE = "The image that `make nav` builds, serial line and interrupts included; each state is sent after ten IMU records, GPS 120 ms late."

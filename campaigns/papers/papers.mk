@@ -4,6 +4,7 @@ PAPERS_C   := $(wildcard lib/filters/src/*.c) $(LAW_SUPPORT) host_tests/support/
 PAPERS_OBJ := $(PAPERS_C:%.c=$(P)/%.o) $(addprefix $(P)/host_tests/papers/,model.o statistics.o)
 PROGRAM    := $(addprefix $(P)/host_tests/papers/,program.o report.o)
 RUNS ?= 10000
+PAPER_SEED ?= 2024
 
 $(P)/%.o: %.cpp Makefile campaigns/papers/papers.mk
 	@mkdir -p $(@D)
@@ -63,11 +64,11 @@ $(P)/products000: $(addprefix $(P)/operations/,family.o filter.o tracker.o param
 PAPERS := $(BATCH) $(P)/paper003 $(P)/paper004_board $(P)/operations002 $(P)/products000
 paper_programs: $(PAPERS)
 
-## papers: run the papers' experiments, double and fixed point, beside the printed numbers, into docs/papers.md (2 minutes; RUNS=2000: judges only, leaves page and JSON alone)
+## papers: run the papers' experiments, double and fixed point, beside the printed numbers, into docs/results/papers-*.md (6 minutes; RUNS=2000, PAPER_SEED=2025: judges only)
 papers:
 	@sh tools/deps.sh papers
 	@$(MAKE) -j2 paper_programs
-	@python3 campaigns/papers/papers.py --runs $(RUNS)
+	@python3 campaigns/papers/papers.py --runs $(RUNS) --seed $(PAPER_SEED)
 
 clean: clean_papers
 clean_papers:

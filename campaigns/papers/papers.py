@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """make papers: runs the experiments of the papers side by side, judges each number against its accepted band and the paper's, writes
-build/papers.json and the tables of docs/papers.md.
+build/papers.json, docs/results/papers-NNN.md and the index of claims, docs/results/papers-index.md.
 
     papers.py [--paper NNN...] [--runs N] [--seed N] [--only WORD...]
 
---paper: only these papers, the others' part of the page and of the JSON stay. With --only, with fewer runs or with another seed page and JSON
-are left alone.
+--paper: only these papers, the others' pages and their part of the JSON stay. With --only, with fewer runs or with another seed pages and JSON
+are left alone; with all runs and another seed a verdict that differs from the page's is a failure.
 """
 import argparse
 import concurrent.futures
@@ -16,8 +16,9 @@ import time
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import page_sources
-from papers_judge import BANDED, VERDICT_RUNS, Fault, judge, read_expected
-from papers_page import DOCUMENT, write_page
+import papers_index
+from papers_judge import BANDED, VERDICT_RUNS, Fault, judge, name_of, read_expected
+from papers_page import document, judged_on, write_page
 from results import output_of, run_as_program
 
 # programs and accepted bands of each paper; a folder is a program in Python
@@ -27,7 +28,7 @@ PAPERS = {paper: (programs, pathlib.Path(f"host_tests/papers/expected_{paper}.cs
                                   ("004", ("campaigns/variable_structure", "build/papers/paper004_board")))}
 PYTHON = pathlib.Path("build/venv/bin/python")  # which has numpy
 # runs that the programs make of --runs 10000, and what each shipped filter must have a band for
-FULL_RUNS = {"000": 4000, "001": 2000, "002": VERDICT_RUNS, "003": 20, "004": 500}
+FULL_RUNS = {"000": 4000, "001": 2000, "002": VERDICT_RUNS, "003": 200, "004": 500}
 WANTED = {"000": ("mse_2_5",), "001": ("sigma_stationary",), "002": BANDED, "003": (), "004": ()}
 JSON = pathlib.Path("build/papers.json")
 PAGE_RUNS, PAGE_SEED = 10000, 2024
@@ -103,9 +104,18 @@ def run_all(experiments, options):
 
 def as_json(paper, rows):
     """A value that is not finite (never back) is null."""
-    fields = ("experiment", "filter", "arithmetic", "metric", "value", "ci_lo", "ci_hi", "runs", "published", "verdict", "reason")
+    fields = ("experiment", "filter", "arithmetic", "metric", "value", "ci_lo", "ci_hi", "runs", "published", "rule", "verdict", "reason")
     finite = lambda v: None if isinstance(v, float) and abs(v) == float("inf") else v
     return [{"paper": paper, **{f: finite(row.get(f)) for f in fields}} for row in rows]
+
+
+def changed_verdicts(rows, text):
+    """Verdicts of a run of another seed that are not the page's."""
+    held = {tuple(row[f] for f in ("experiment", "filter", "arithmetic", "number", "printed")): row["verdict"] for row in judged_on(text)}
+    for row in (row for row in rows if row.get("verdict")):
+        before = held.get((row["experiment"], row["filter"], row["arithmetic"], row["metric"], row["published"]))
+        if before != row["verdict"]:
+            yield f"{name_of(row)} = {row['value']:.6g} is {row['verdict']} ({row['published']}: {row['rule']}), on the page {before}"
 
 
 def options_of(words):
@@ -120,27 +130,29 @@ def options_of(words):
 def main():
     options = options_of(sys.argv[1:])
     whole = not options.only and options.runs >= PAGE_RUNS and options.seed == PAGE_SEED
-    began, failures, collected, sources = time.monotonic(), [], [], page_sources.hash_now(DOCUMENT)
+    began, failures, collected = time.monotonic(), [], []
+    sources = {paper: page_sources.hash_now(document(paper)) for paper in PAPERS}
     for paper, experiments in chosen_of(options.only, options.paper).items():
         expected = read_expected(PAPERS[paper][1])
         rows = run_all(experiments, options)
         found = judge(rows, expected, bool(options.only), FULL_RUNS[paper], WANTED[paper])
         failures += [f"paper {paper}: {text}" for text in found]
         collected += as_json(paper, rows)
+        if options.runs >= PAGE_RUNS and not whole:
+            failures += [f"paper {paper}: {text}" for text in changed_verdicts(rows, document(paper).read_text(encoding="utf-8"))]
         if whole:
-            write_page(paper, rows, options)
+            write_page(paper, rows, options, sources[paper])
     if whole:
         held = json.loads(JSON.read_text(encoding="utf-8")) if options.paper and JSON.exists() else []
         kept = [row for row in held if row["paper"] not in options.paper]
         JSON.write_text(json.dumps(sorted(kept + collected, key=lambda row: row["paper"]), indent=0) + "\n", encoding="utf-8")
-        if not options.paper:
-            page_sources.write_hash(DOCUMENT, sources)
+        papers_index.write()
     for text in failures:
         print(text)
     judged = sum(1 for row in collected if row["verdict"])
-    where = f", in {JSON} and docs/papers.md" if whole else "; page left alone"
+    where = f", in {JSON} and docs/results/papers-*.md" if whole else "; pages left alone"
     print(f"papers: {len(collected)} numbers ({judged} beside the paper's){where}; {options.runs} runs, seed {options.seed}, "
-          f"{time.monotonic() - began:.0f} s; {len(failures)} outside their band")
+          f"{time.monotonic() - began:.0f} s; {len(failures)} outside their band or with another verdict")
     return 1 if failures else 0
 
 

@@ -2,11 +2,11 @@
 import re
 
 from page_sources import Fault
+from papers_verdict import TAKES
 
 REF = r"(?:@\w+|#\S+|[\w(][\w().:=-]*)"
 BOUND = re.compile(rf"(?:(-?\d+(?:\.\d+)?(?:e-?\d+)?)|(?:(\d+(?:\.\d+)?) x )?({REF}))(?: \+ (\d) se)?$")
 PART = re.compile(r"(\d+(?:\.\d+)?(?:e-?\d+)?)( se| %)?$")
-BOUND_RULES = re.compile(r"reproduced (<=|>=) (.+); refuted (<=|>=) (.+)$")
 SE_MOST = 4  # of a thousand numbers one leaves four standard errors once in sixteen seeds
 NORMAL_95 = 1.959964
 
@@ -85,14 +85,6 @@ def band_of(rule, row, rows, few=False):
     return low, high
 
 
-def verdict_by(rule, row, rows):
-    """The verdict of a claim in words, from the number."""
-    how, good, far_how, bad = BOUND_RULES.match(rule["verdict"]).groups()
-    meets = lambda sign, text: (row["value"] <= bound_value(text, row, rows, rule["line"]) if sign == "<=" else
-                                row["value"] >= bound_value(text, row, rows, rule["line"]))
-    return "reproduced" if meets(how, good) else "refuted" if meets(far_how, bad) else "not reproduced"
-
-
 def faulty_cells(rule):
     """Sentences about bounds that cannot be read."""
     low, high = rule["low"], rule["high"]
@@ -102,10 +94,9 @@ def faulty_cells(rule):
         yield f"'{high}' is no width about '{low}'"
     if high and not high.startswith("+-") and not BOUND.match(high):
         yield f"'{high}' is no bound"
-    found = BOUND_RULES.match(rule["verdict"])
-    for text in (found[2], found[4]) if found else ():
-        if not BOUND.match(text):
-            yield f"'{text}' is no bound"
+    takes = TAKES.match(rule["takes"])
+    if takes and takes[3] and not BOUND.match(takes[3]):
+        yield f"'{takes[3]}' is no bound"
 
 
 def unreasoned(rule):

@@ -1,14 +1,12 @@
-"""The tables of docs/papers.md, written by make papers between two markers for each paper: papers_page_NNN.py has those of a paper."""
+"""docs/results/papers-NNN.md, one page for each paper, written whole by make papers: papers_page_NNN.py has a paper's tables."""
 import fnmatch
 import importlib
 import math
-import pathlib
 
-from page_sources import Fault
-from results import markdown, no_title_twice
+from results import FOLDER, Results, markdown
 
-DOCUMENT = pathlib.Path("docs/papers.md")
-BEGIN, END = "<!-- written by make papers: begin -->", "<!-- written by make papers: end -->"
+BESIDE = "Beside the paper"
+JUDGED = ("filter", "arithmetic", "experiment", "number", "measured", "interval", "printed", "rule", "verdict", "reason")
 DIVERGED = 1e-6  # a K_ef below it is that of an estimate without bounds
 
 
@@ -52,10 +50,30 @@ def grid(rows, columns, intervals=False):
     return table(["filter", "arithmetic", *(title for title, _, _ in columns)], lines)
 
 
+def exactly(value):
+    return "never" if math.isinf(value) else f"{value:.6g}"
+
+
 def verdicts(rows):
-    lines = [[f"`{r['filter']}`", r["arithmetic"], r["experiment"].replace("_", " "), r["metric"].replace("_", " "), with_interval(r), r["published"],
-              f"**{r['verdict']}**" if r["verdict"] == "refuted" else r["verdict"], r["reason"]] for r in rows if r.get("verdict")]
-    return table(["filter", "arithmetic", "experiment", "number", "measured [95 %]", "paper", "verdict", "reason"], lines)
+    """What is printed beside what is measured, with the digits that the verdict needs."""
+    lines = []
+    for r in (r for r in rows if r.get("verdict")):
+        interval = f"{exactly(r['ci_lo'])} to {exactly(r['ci_hi'])}" if r.get("ci_lo") is not None else ""
+        lines.append([f"`{r['filter']}`", r["arithmetic"], r["experiment"], r["metric"], exactly(r["value"]), interval, r["published"], r["rule"],
+                      r["verdict"], r["reason"]])
+    return table(JUDGED, lines)
+
+
+def judged_on(text):
+    """The rows of a page's table of verdicts, as dictionaries of JUDGED; measured and interval are numbers."""
+    found = []
+    for line in text.partition(f"## {BESIDE}\n")[2].partition("\n## ")[0].splitlines():
+        if line.startswith("| `"):
+            row = dict(zip(JUDGED, (cell.strip() for cell in line[2:-2].split(" | "))), line=line)
+            low, _, high = row["interval"].partition(" to ")
+            found.append({**row, "filter": row["filter"].strip("`"), "measured": float(row["measured"].replace("never", "inf")),
+                          "interval": (float(low), float(high.replace("never", "inf"))) if low else (None, None)})
+    return found
 
 
 def part_of(paper):
@@ -63,37 +81,28 @@ def part_of(paper):
     return importlib.import_module(f"papers_page_{paper}")
 
 
-def page_text(paper, rows, options):
-    """The part of a paper: how many runs, then its tables that have a line."""
-    part = part_of(paper)
-    lines = [f"{part.runs_of(options.runs)}, seed {options.seed}.", ""]
-    for heading, table_lines in part.tables(rows):
+def document(paper):
+    return FOLDER / f"papers-{paper}.md"
+
+
+def lines_of(paper, rows):
+    """A paper's tables that have a line, under their headings."""
+    lines = []
+    for heading, table_lines in part_of(paper).tables(rows):
         if any(line.startswith("| `") for line in table_lines):
-            lines += [f"### {heading}", "", *table_lines]
-    return "\n".join(lines)
+            lines += [f"## {heading}", "", *table_lines]
+    return lines
 
 
-def markers(paper):
-    """Of the part of the page that make papers writes for a paper."""
-    return (BEGIN, END) if paper == "002" else tuple(m.replace("papers:", f"papers, {paper}:") for m in (BEGIN, END))
+def page_of(paper, options):
+    about = (f"{part_of(paper).runs_of(options.runs)}, seed {options.seed}. How it is counted, and the errata: "
+             f"[paper {paper}](../papers-{paper}.md).\n"
+             "What the verdicts mean: [papers](../papers.md). From a claim to its row, function and test: [index](papers-index.md).")
+    return Results(document(paper), f"Paper {paper}: results", "make papers", about)
 
 
-def between(text, paper):
-    """(before, the part, after)."""
-    begin, end = markers(paper)
-    if text.count(begin) != 1 or text.count(end) != 1 or text.index(begin) > text.index(end):
-        raise Fault(f"{DOCUMENT}: wants one line '{begin}', and one '{end}' below it")
-    before, rest = text.split(begin)
-    part, after = rest.split(end)
-    return before, part, after
-
-
-def write_page(paper, rows, options):
-    begin, end = markers(paper)
-    before, _, after = between(DOCUMENT.read_text(encoding="utf-8"), paper)
-    part = page_text(paper, rows, options)
-    no_title_twice(DOCUMENT, part.splitlines())
-    DOCUMENT.write_text(f"{before}{begin}\n{part}\n{end}{after}", encoding="utf-8")
+def write_page(paper, rows, options, sources=None):
+    page_of(paper, options).write(lines_of(paper, rows), sources)
 
 
 def stale(paper, rows, text):
@@ -105,16 +114,16 @@ def stale(paper, rows, text):
         return line.startswith("| `") and not (in_double and "| fixed |" in line)
 
     def free(line):
-        """Of a line under "Beside the paper"."""
+        """Of a line of the verdicts."""
         named = line.split(" | ")
-        return len(named) > 2 and any(fnmatch.fnmatchcase(named[2].replace(" ", "_"), pattern) for pattern in part.CHANCE_FREE)
+        return len(named) > 2 and any(fnmatch.fnmatchcase(named[2], pattern) for pattern in part.CHANCE_FREE)
 
     tables = list(part.tables(rows))
     made = [line for _, lines in tables for line in lines if counts(line)]
-    titles = [heading for heading, lines in tables if any(line.startswith("| `") for line in lines) and heading != "Beside the paper"]
+    titles = [heading for heading, lines in tables if any(line.startswith("| `") for line in lines) and heading != BESIDE]
     held, heading = [], ""
-    for line in between(text, paper)[1].splitlines():
-        heading = line[4:] if line.startswith("### ") else heading
-        if counts(line) and (heading in titles or (heading == "Beside the paper" and free(line))):
+    for line in text.splitlines():
+        heading = line[3:] if line.startswith("## ") else heading
+        if counts(line) and (heading in titles or (heading == BESIDE and free(line))):
             held.append(line)
     return [f"the page lacks: {line}" for line in made if line not in held] + [f"the page has: {line}" for line in held if line not in made]

@@ -1,7 +1,7 @@
-"""The tables of docs/papers.md for paper 000."""
+"""The tables of docs/results/papers-000.md."""
 import fnmatch
 
-from papers_page import grid, pick, shown, table, verdicts, with_interval
+from papers_page import BESIDE, grid, pick, shown, table, verdicts, with_interval
 
 TURNS = ("ramp30", "cos60", "minjerk60", "bump30", "sine30", "triangle30", "steps30")
 LEVELS = ("-0.3:0.1", "0:0.1", "0:0.3", "-0.1:0.3", "0.9:0.3")
@@ -15,7 +15,7 @@ ADAPTIVE_TURNS = ("ramp30", "cos60", "bump30", "sine30")
 ADAPTIVE_KINDS = (("clean", "clean"), ("5_percent", "5 % with 20 times the noise"), ("15_percent", "15 %"),
                   ("shift_20_sigma", "5 % shifted by 20 sigma to either side"))
 # experiments without chance: their tables are the same for every seed and number of runs
-CHANCE_FREE = ("schedule_*", "algorithm_22_*", "table1_*", "equal_noise*", "roll_tilt-*", "roll_through-*")
+CHANCE_FREE = ("schedule_*", "algorithm_22_*", "table1_*", "equal_noise*", "roll_tilt-*", "roll_through-*", "complexity")
 
 
 def windows(prefix="mse", names=("0_5", "6_10", "11_15")):
@@ -113,7 +113,9 @@ def runs_of(runs):
 
 def tables(rows):
     """(heading, lines)."""
-    yield "Beside the paper", verdicts(rows)
+    yield BESIDE, verdicts(rows)
+    yield "Operations of a sample, counted on the equations; a quotient counts as a multiplication", grid(rows, [
+        (metric, "complexity", [metric]) for metric in ("multiplications", "additions", "quotients")])
     yield "Gains of (22) without data: the paper's 15 s, and after 8,000 steps", schedule_table(rows)
     yield "(22) on the roll, P(0) = 5, R = 0.6: exact mean square error in 0-5 / 6-10 / 11-15 s, degree^2", [
         line.replace("never / never / never", "0 / 0 at once") for line in grid(rows, [

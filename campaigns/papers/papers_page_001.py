@@ -1,7 +1,7 @@
-"""The tables of docs/papers.md for paper 001."""
-from papers_page import grid, verdicts
+"""The tables of docs/results/papers-001.md."""
+from papers_page import BESIDE, grid, verdicts
 
-CHANCE_FREE = ("altitude_kalman",)
+CHANCE_FREE = ("altitude_kalman", "ratios")
 
 
 def runs_of(runs):
@@ -9,7 +9,7 @@ def runs_of(runs):
 
 
 def tables(rows):
-    yield "Beside the paper", verdicts(rows)
+    yield BESIDE, verdicts(rows)
     for name, title in (("altitude_half_a_t2", "x = a t^2 / 2"), ("altitude_a_t2", "x = a t^2")):
         yield f"{title}: metres", grid(rows, [
             ("sigma, straight legs", name, ["sigma"]), ("of one run +-", name, ["sigma_one_run_sd"]), ("sigma, 10-20 s", name, ["sigma_stationary"]),

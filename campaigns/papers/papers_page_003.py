@@ -1,5 +1,5 @@
-"""The tables of docs/papers.md for paper 003."""
-from papers_page import grid, verdicts
+"""The tables of docs/results/papers-003.md."""
+from papers_page import BESIDE, grid, verdicts
 
 CHANCE_FREE = ("tau", "covariance")
 STATES = ("position_n", "position_e", "position_d", "velocity_n", "velocity_e", "velocity_d", "attitude_n", "attitude_e", "attitude_d",
@@ -12,12 +12,12 @@ LOOPS = (("closed_loop", "Closed loop, nav/lib with its queue"), ("closed_loop_1
 
 
 def runs_of(runs):
-    return f"{min(20, runs // 200)} flights of each kind"
+    return f"{min(200, runs // 50)} flights of each kind"
 
 
 def tables(rows):
     """(heading, lines)."""
-    yield "Beside the paper", verdicts(rows)
+    yield BESIDE, verdicts(rows)
     yield "tau (3.34) of 17818, 1951, 41847 nT", grid(rows, [(name.replace("_", " "), "tau", [name]) for name in TAU])
     yield "Sigmas against the thesis' square root: largest difference over 500 s, relative; least element of D", grid(rows, [
         (title, "covariance", [metric]) for title, metric in (("difference", "largest_difference"), ("least D", "least_d"))])

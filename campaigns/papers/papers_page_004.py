@@ -1,5 +1,5 @@
-"""The tables of docs/papers.md for paper 004."""
-from papers_page import grid, verdicts
+"""The tables of docs/results/papers-004.md."""
+from papers_page import BESIDE, grid, verdicts
 
 CHANCE_FREE = ("observability",)
 FLIGHTS = (("windows_stuck_at_zero", "Frozen output is zero: the window's own data choose"),
@@ -20,7 +20,7 @@ def runs_of(runs):
 
 def tables(rows):
     """(heading, lines)."""
-    yield "Beside the paper", verdicts(rows)
+    yield BESIDE, verdicts(rows)
     yield "The channel of the inertial system: (9) to (12)", grid(rows, [
         (metric, "observability", [metric]) for metric in ("sum_a2_1", "sum_a2_2", "sum_a2_3", "condition")])
     yield "Trends: the 20 s after 40 s of estimates", grid(rows, [

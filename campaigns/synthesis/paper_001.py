@@ -16,6 +16,7 @@ UP, DOWN, STRAIGHT = 200, 350, 500  # samples at which the legs begin
 # the paper's "polynomial of second order" is x = a t^2 / 2 or, to the letter of a polynomial, x = a t^2
 FACTORS = {"altitude_half_a_t2": 1.0, "altitude_a_t2": 2.0}
 KF1_LAG_M, KF1_SIGMA_M, KF2_SIGMA_M = 1.4, 0.3, 0.45  # published, solved for
+LAG_M, SIGMA_OWN_M = 0.9, 0.37  # published, of the synthesised filter
 SETTLE = 200  # samples of run-in for the filters on the chip: 20 s
 LAGS = {"lag_20_35": slice(UP, DOWN), "lag_35_50": slice(DOWN, STRAIGHT), "lag_settled": slice(300, DOWN)}
 STATIONARY = slice(100, UP)
@@ -116,6 +117,13 @@ def readings(options):
             errors = true - estimator(true[None])[0]
             yield reading, name, "double", "peak_bias", np.max(np.abs(errors)), 1
             yield reading, name, "double", "lag_noise_free", errors[DOWN - 1], 1
+
+
+def ratios(_options):
+    """Of what the paper prints: the first Kalman filter's lag by its own filter's, its own sigma by the first one's, the second one's by its own."""
+    for metric, value in (("lag_kf1_by_own", KF1_LAG_M / LAG_M), ("sigma_own_by_kf1", SIGMA_OWN_M / KF1_SIGMA_M),
+                          ("sigma_kf2_by_own", KF2_SIGMA_M / SIGMA_OWN_M)):
+        yield "ratios", "printed", "double", metric, value, 1
 
 
 # --- every filter of FILTER_LIST on the same altitude

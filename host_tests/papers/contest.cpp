@@ -4,7 +4,6 @@
 #include "model.hpp"
 #include "reference/robust.h"
 #include "scope.hpp"
-#include "statistics.hpp"
 
 extern "C" {
 #include "support/laws.h"
@@ -35,6 +34,7 @@ class Filter
     virtual double step(double y_deg) = 0;
     virtual bool refused() const = 0;
     virtual double gain() const = 0;
+    virtual double share() const = 0;        // of normal samples as the filter has it, q1
     virtual void reveal(bool /*outlier*/) {} // for the clairvoyant, before the step
 };
 
@@ -71,6 +71,10 @@ class DoubleFilter final : public FilterOf<robust_reference_t>
     {
         return f_.gain[0];
     }
+    double share() const override
+    {
+        return f_.q_mean;
+    }
     void reveal(bool outlier) override
     {
         f_.outlier = outlier;
@@ -94,6 +98,10 @@ class FixedFilter final : public FilterOf<filter_t>
         filter_probe_t probe;
         filter_probe(&f_, &probe);
         return probe.gain_uq16 / 65536.0;
+    }
+    double share() const override // of a filter that learns it
+    {
+        return f_.own.mixture.normal_uq24 / 16777216.0;
     }
 };
 
@@ -178,8 +186,8 @@ void through_burst(Filter &f, Realisation &realisation, const Scenario &scenario
 }
 
 // Square errors in the steady state, of the start and of the start without the rows of the warm-up; whether the filter
-// is outside for all of the last hundred samples.
-bool score(Filter &f, Realisation &realisation, double back_deg, std::array<double, 3> &sum)
+// is outside for all of the last hundred samples. errors: of each sample.
+bool score(Filter &f, Realisation &realisation, double back_deg, std::array<double, 3> &sum, double *errors)
 {
     bool locked = true;
     f.restart();
@@ -189,6 +197,7 @@ bool score(Filter &f, Realisation &realisation, double back_deg, std::array<doub
         const double error = f.step(s.y) - s.truth;
         // a filter that has left the world of numbers is as wrong as can be
         const double square = std::isfinite(error) ? std::fmin(error * error, 1e12) : 1e12;
+        *errors++ = std::copysign(std::sqrt(square), error);
         sum[0] += (k >= 200) ? square : 0.0;
         sum[1] += (k < 60) ? square : 0.0;
         sum[2] += (k >= warm_up_rows && k < 60) ? square : 0.0;
@@ -224,7 +233,7 @@ extern "C" {
 // A filter in double by its name in reference/robust.h, Table 1 with what differs from it; p22_start 0: Table 1's, else
 // that variance of the rate, at most p22_limit_r times R. NULL: refused.
 Filter *contest_in_double(const char *name, int reading, double r_factor, double gate_sigma, int reacquire,
-                          double rate_max, int median_window, double p22_start, double p22_limit_r)
+                          double rate_max, int median_window, double p22_start, double p22_limit_r, double stay)
 {
     robust_reference_t f;
     if (!robust_reference_table1(&f, name)) {
@@ -233,6 +242,7 @@ Filter *contest_in_double(const char *name, int reading, double r_factor, double
     f.reading = static_cast<robust_reading_t>(reading);
     f.r *= r_factor;
     f.gate_sigma = gate_sigma;
+    f.stay = stay;
     f.reacquire = reacquire;
     if (reacquire != 0) {
         f.rate_max = rate_max;
@@ -307,17 +317,34 @@ void contest_steps(const std::uint64_t *seeds, int runs, double outliers, double
     }
 }
 
-// squares: filters x windows x runs; locked: runs in which each is.
+// squares: filters x windows x runs; locked: runs in which each is; errors: filters x runs x samples.
 void contest_score(Filter *const *filters, int count, const Scenario *scenario, const std::uint64_t *seeds, int runs,
-                   const double *back_deg, double *squares, double *locked)
+                   const double *back_deg, double *squares, double *locked, double *errors)
 {
     for (int run = 0; run < runs; run++) {
         papers::Realisation realisation(*scenario, seeds[run]);
         for (int i = 0; i < count; i++) {
             std::array<double, 3> sum{};
-            locked[i] += papers::score(*filters[i], realisation, back_deg[i], sum);
+            locked[i] += papers::score(*filters[i], realisation, back_deg[i], sum,
+                                       errors + static_cast<std::ptrdiff_t>(i * runs + run) * papers::samples);
             for (int window = 0; window < 3; window++) {
                 squares[(3 * i + window) * runs + run] = sum[static_cast<std::size_t>(window)];
+            }
+        }
+    }
+}
+
+// Mean over the runs of q1 as a filter has it after each sample: filters x samples.
+void contest_shares(Filter *const *filters, int count, const Scenario *scenario, const std::uint64_t *seeds, int runs,
+                    double *mean)
+{
+    for (int run = 0; run < runs; run++) {
+        papers::Realisation realisation(*scenario, seeds[run]);
+        for (int i = 0; i < count; i++) {
+            filters[i]->restart();
+            for (int k = 0; k < papers::samples; k++) {
+                (void)filters[i]->step(realisation.at(k).y);
+                mean[i * papers::samples + k] += filters[i]->share() / runs;
             }
         }
     }
@@ -359,28 +386,6 @@ void contest_burst(Filter *const *filters, int count, int length, const std::uin
             papers::through_burst(*filters[i], realisation, scenario, sigma_ss, peak + i * runs + run,
                                   back + i * runs + run);
         }
-    }
-}
-
-// Of each column the sum of the one by the sum of the other, and the percentiles of resampled runs: columns x 3.
-void contest_ratios(int columns, int runs, const double *above, const double *below, std::uint64_t seed, double *ratios)
-{
-    std::vector<std::vector<double>> over;
-    std::vector<std::vector<double>> under;
-    for (int i = 0; i < columns; i++) {
-        over.emplace_back(above + i * runs, above + (i + 1) * runs);
-        under.emplace_back(below + i * runs, below + (i + 1) * runs);
-    }
-    std::vector<const std::vector<double> *> numerators;
-    std::vector<const std::vector<double> *> denominators;
-    for (std::size_t i = 0; i < over.size(); i++) {
-        numerators.push_back(&over[i]);
-        denominators.push_back(&under[i]);
-    }
-    for (const papers::Interval &ratio : papers::bootstrap_ratios(numerators, denominators, seed)) {
-        *ratios++ = ratio.value;
-        *ratios++ = ratio.low;
-        *ratios++ = ratio.high;
     }
 }
 }

@@ -25,12 +25,21 @@ void Realisation::extend()
     angle_ += period_s * rate_; // (5)
     rate_ += std::sqrt(q_rate) * random_normal(&random_);
     const double v = sigma_deg * random_normal(&random_);
-    bool outlier = random_uniform(&random_) < scenario_.outliers && !(k == 0 && scenario_.first_clean);
+    bool outlier = random_uniform(&random_) < chance_of_outlier() && !(k == 0 && scenario_.first_clean);
     outlier = outlier ||
               (scenario_.burst_at >= 0 && k >= scenario_.burst_at && k < scenario_.burst_at + scenario_.burst_length);
     const bool stepped = scenario_.step_at >= 0 && k >= scenario_.step_at;
     const double truth = angle_ + (stepped ? scenario_.step_sigma * sigma_deg : 0.0);
     samples_.push_back({ truth, truth + (outlier ? ratio : 1.0) * v, outlier }); // (4)
+}
+
+double Realisation::chance_of_outlier() const
+{
+    if (scenario_.stay == 0.0 || samples_.empty()) {
+        return scenario_.outliers;
+    }
+    return samples_.back().outlier ? scenario_.stay
+                                   : scenario_.outliers * (1.0 - scenario_.stay) / (1.0 - scenario_.outliers);
 }
 
 const Sample &Realisation::at(int k)

@@ -21,6 +21,7 @@ constexpr double lsb_deg = 0.02;
 
 struct Scenario {
     double outliers = 1.0 - clean; // their probability
+    double stay = 0.0;             // (11): that an outlier follows an outlier; 0: they are independent
     bool first_clean = false;      // the first sample is none
     int step_at = -1;              // from this sample on the angle is off by step_sigma
     double step_sigma = 0.0;
@@ -43,6 +44,7 @@ class Realisation
 
   private:
     void extend();
+    double chance_of_outlier() const;
 
     Scenario scenario_;
     test_random_t random_;

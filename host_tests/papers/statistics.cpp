@@ -59,3 +59,27 @@ std::vector<Interval> bootstrap_ratios(const std::vector<const std::vector<doubl
     return result;
 }
 } // namespace papers
+
+extern "C" {
+// Of each column the sum of the one by the sum of the other, and the percentiles of resampled runs: columns x 3.
+void contest_ratios(int columns, int runs, const double *above, const double *below, std::uint64_t seed, double *ratios)
+{
+    std::vector<std::vector<double>> over;
+    std::vector<std::vector<double>> under;
+    for (int i = 0; i < columns; i++) {
+        over.emplace_back(above + i * runs, above + (i + 1) * runs);
+        under.emplace_back(below + i * runs, below + (i + 1) * runs);
+    }
+    std::vector<const std::vector<double> *> numerators;
+    std::vector<const std::vector<double> *> denominators;
+    for (std::size_t i = 0; i < over.size(); i++) {
+        numerators.push_back(&over[i]);
+        denominators.push_back(&under[i]);
+    }
+    for (const papers::Interval &ratio : papers::bootstrap_ratios(numerators, denominators, seed)) {
+        *ratios++ = ratio.value;
+        *ratios++ = ratio.low;
+        *ratios++ = ratio.high;
+    }
+}
+}

@@ -1,4 +1,4 @@
-// Paper 002 in matrices, in double. Where an equation is not taken as printed, docs/papers.md says why.
+// Paper 002 in matrices, in double. Where an equation is not taken as printed, docs/papers-002.md says why.
 #include "reference/robust.h"
 #include "reference/matrices.hpp"
 

@@ -1,6 +1,7 @@
 /*
- * The filters of paper 002 in double, written from its equations as matrices (Eigen) with the errata of docs/papers.md
- * applied, and the literal printed readings that these errata refute; plain C interface. (n) is the paper's numbering.
+ * The filters of paper 002 in double, written from its equations as matrices (Eigen) with the errata of
+ * docs/papers-002.md applied, and the literal printed readings that these errata refute; plain C interface. (n) is the
+ * paper's numbering.
  */
 #ifndef REFERENCE_ROBUST_H
 #define REFERENCE_ROBUST_H

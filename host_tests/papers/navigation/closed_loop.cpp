@@ -12,8 +12,8 @@ namespace papers::navigation
 {
 namespace
 {
-constexpr int runs_of_a_flight = 200; // so that the median of few still has an interval
-constexpr int most_flights = 20;
+constexpr int runs_of_a_flight = 50;
+constexpr int most_flights = 200; // of a case: so many that no verdict hangs on the seed
 constexpr double degree = 57.29577951308232;
 constexpr int lost = 160; // s: GPS is there up to here and again from 400 s on
 constexpr int back = 399;

@@ -1,5 +1,5 @@
-"""docs/results/variable-structure.md: its tables are those of docs/papers.md, what has no chance in it comes out again, its picture shows what it
-should."""
+"""docs/results/variable-structure.md: its tables are those of docs/results/papers-004.md, what has no chance in it comes out again, its picture shows
+what it should."""
 import pathlib
 import sys
 from unittest import mock
@@ -12,18 +12,18 @@ needs("papers", "numpy", "matplotlib")
 import structure_page  # noqa: E402
 import results  # noqa: E402
 import structure_picture  # noqa: E402
-from papers_page import between  # noqa: E402
+from papers_page import document  # noqa: E402
 from papers_page_004 import COLUMNS, FLIGHTS  # noqa: E402
 
 TEXT = structure_page.PAGE.held()
-PAPERS = between(pathlib.Path("docs/papers.md").read_text(encoding="utf-8"), "004")[1]
+PAPERS = document("004").read_text(encoding="utf-8")
 
 
 def of_papers():
     """{(experiment, rule, metric): as shown, without its interval} of the tables that make papers writes."""
     found = {}
     for experiment, title in FLIGHTS:
-        lines = [line for line in PAPERS.split(f"### {title}\n")[1].split("\n### ")[0].splitlines() if line.startswith("| `")]
+        lines = [line for line in PAPERS.split(f"## {title}\n")[1].split("\n## ")[0].splitlines() if line.startswith("| `")]
         for line in lines:
             rule, _, *cells = (cell.strip() for cell in line.strip("|").split("|"))
             found.update({(experiment, rule.strip("`"), metric): cell.split(" [")[0] for cell, (_, metric) in zip(cells, COLUMNS)})
