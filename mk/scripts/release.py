@@ -56,6 +56,13 @@ def boards_for(name, path):
     return [board.name for board in boards.TABLE.values() if board.clock_hz == clock_hz and size(path) <= board.flash]
 
 
+def judge_nameless(path):
+    """An image whose debug information names this folder is another one in another folder (mk/release.mk)."""
+    elf = pathlib.Path(path).with_suffix(".elf")
+    if elf.is_file() and os.fsencode(os.getcwd()) in elf.read_bytes():
+        sys.exit(f"release: {elf} has this folder's name in it, so its code depends on the name: build it by make dist")
+
+
 def notes(hexes):
     rows = []
     for name, path in hexes.items():
@@ -71,6 +78,8 @@ def pack(folder, epoch, arguments, demo, library, *named):
         sys.exit(f"release: '{epoch}' is no time for the archives: give SOURCE_DATE_EPOCH=, seconds since 1970, where git has none")
     folder, hexes = pathlib.Path(folder), dict(word.split("=", 1) for word in named)
     hexes = {name: path for name, path in hexes.items() if boards_for(name, path)}
+    for path in hexes.values():
+        judge_nameless(path)
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for name, path in hexes.items():
