@@ -308,11 +308,12 @@ def main(arguments=None):
         run, cut = read_numbers(options.run, RUN_COLUMNS)
         result = analyse(run, truth_source(options))
         stats = read_stats(options.stats)
+        repeated = repeats(stats, options.stream)
         draw(result, options.title or options.run, options.png)
     except InputError as error:
         print(f"plot_run: {error}", file=sys.stderr)
         return 2
-    print("\n".join(summary_lines(result, stats, cut) + repeats(stats, options.stream)))
+    print("\n".join(summary_lines(result, stats, cut) + repeated))
     print(f"picture: {options.png}")
     return 0
 

@@ -169,6 +169,15 @@ class Command(Case):
         self.assertIn("2 rows cut short", out)
 
 
+    def test_a_sensor_faster_than_its_stream_is_explained(self):
+        stream = self.write("stream.csv", ["t_us,x,y,z", *(f"{10_000 * i},1,2,{250 + i}" for i in range(9))])
+        run = self.write("run.csv", made_run()[0])
+        for sensor_hz, words in ((800, "the stream has 100 rows/s, the sensor took 800/s: it repeats each reading"), (100, ""), (50, "")):
+            out = self.plot("--run", run, "--stream", stream, "--stats", self.write("stats.json", [json.dumps({"sensor_hz": sensor_hz})]))[1]
+            self.assertEqual(bool(words), "it repeats each reading" in out)
+            self.assertIn(words, out)
+
+
 class BadInput(Case):
     def refused(self, lines, *words):
         status, out, err = self.plot("--run", self.write("run.csv", lines))

@@ -180,7 +180,7 @@ static bool choose(int kind, uint16_t rate_dhz, const int64_t *values, const uin
     for (uint8_t i = 0; i < filter_parameter_count(choice_law(choice)); i++) {
         if (changed[i]) {
             choice->parameters[i] = (uint32_t)values[i];
-            choice->own |= (uint8_t)(1u << i);
+            choice->own = (uint8_t)(choice->own | (1u << i));
         }
     }
     return choice_legal(choice, rate_dhz);
