@@ -15,7 +15,7 @@ $(B)/papers/libfusion.so: host_tests/comparison/fusion_traces.c host_tests/compa
 ## comparison: measure ours beside other filters: accuracy, lag, cycles, flash, among outliers (PEERS=folder), into docs/results/comparison.md (2 minutes)
 comparison:
 	@sh tools/deps.sh papers
-	@$(MAKE) -j2 $(H)/default_filter build/papers/libtraces.so $(FUSION_BUILT)
+	@$(MAKE) -j2 $(H)/default_filter $(B)/papers/libtraces.so $(S)/simrun $(FUSION_BUILT)
 	@test -f $(B)/default.json || $(MAKE) default
 	@$(PY) campaigns/pages/comparison.py --flags '$(BENCH_COMMON) -Wl,--gc-sections $(BENCH_INC) -Ihost_tests' --sources '$(BENCH_SRC)' --peers '$(PEERS)'
 

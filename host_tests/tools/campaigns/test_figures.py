@@ -1,6 +1,7 @@
 """make figures in small: every figure is drawn, has its axes' labels and what its paper prints; the page shows each, with its numbers."""
 import pathlib
 import sys
+from unittest import mock
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from system_support import needs, run_all, test
@@ -8,6 +9,7 @@ from system_support import needs, run_all, test
 needs("papers", "numpy", "matplotlib")
 
 import figures  # noqa: E402
+import pictures  # noqa: E402
 import figures_style  # noqa: E402
 import results  # noqa: E402
 
@@ -42,7 +44,8 @@ def save_small(drawn):
 
     picture.draw, picture.path = watched, FOLDER / picture.path.name
     picture.path.unlink(missing_ok=True)
-    picture.save()
+    with mock.patch.object(pictures, "DPI", 30):
+        picture.save()
     return picture.path, found
 
 
