@@ -30,7 +30,8 @@ ABOUT = f"""
 Ours as the firmware runs them, beside an exponential mean (EMA), the same behind a median or a Hampel filter, the 1-euro filter, Kalman filters with
 Huber's weight, with Student's t noise and with maximum correntropy, an interacting multiple model of three, and the accelerometer's path of
 [Fusion](https://github.com/xioTechnologies/Fusion) (its gyroscope at zero, settings as delivered). The peers are ours to write
-(`host_tests/support/peers.c`, `robust_peers.c`); the Kalman ones have `{PLAIN}`'s defaults and are given the noise that the firmware's estimator gives.
+(`host_tests/support/peers.c`, `robust_peers.c`); the Kalman ones have `{PLAIN}`'s defaults and are given the noise that the firmware's
+estimator gives.
 [How this compares](../comparison.md) says what follows.
 """
 PAGE = Results(FOLDER / "comparison.md", "Ours beside other filters: results", "make comparison", ABOUT)

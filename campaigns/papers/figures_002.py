@@ -259,6 +259,6 @@ def figures(runs):
               "The simplified filters on the run of Fig. 2."),
         Drawn("002-6", "Paper 002, Fig. 6", 3, draw_6, of_6, __file__, "Variances over 50 runs.", beside_6),
         Drawn("002-7", "Paper 002, Fig. 7", 2.2, draw_7, bands(curves), __file__,
-              f"K_ef at each sample, of {groups} experiments of 50 runs. Hatched: Table 2, its transient and its steady mode; that which learns is the\n"
-              "recursive one.",
+              f"K_ef at each sample, of {groups} experiments of 50 runs. Hatched: Table 2, its transient and its steady mode; that which learns\n"
+              "is the recursive one.",
               beside_7(curves))]
