@@ -34,6 +34,10 @@ static void __attribute__((constructor)) start_ahead_of_a_stop(void) /* ahead of
 }
 #endif
 
+#if CASE == 9
+EMPTY_INTERRUPT(TWI_vect)
+#endif
+
 int main(void)
 {
 #if CASE == 1
@@ -60,6 +64,9 @@ int main(void)
     cli();
     sleep_enable();
     sleep_cpu();
+#elif CASE == 9
+    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWIE) | _BV(TWSTA);
+    sei();
 #endif
     for (;;) {
     }

@@ -49,6 +49,7 @@ RULES = (
     ("hal_probe", "hal/avr/hal_sleep.c", "        cli();\n", "", SLEEP),
     ("hal_probe", "hal/avr/hal_sleep.c", "        sei();\n        sleep_cpu", "        sei();\n        __builtin_avr_nop();\n        sleep_cpu",
      SLEEP),
+    ("hal_probe", "hal/avr/hal_sleep.c", "    SMCR = _BV(SE);\n", "", "SLEEP without SE in SMCR"),
     ("hal_probe", "hal/avr/hal_time.c", "hal_irq_save();\n    uint16_t since", "SREG;\n    uint16_t since", TIMER),
     ("hal_probe", "hal/avr/hal_time.c", "hal_irq_save(); /* the timer", "SREG; /* the timer", TIMER),
     ("hal_probe", "hal/avr/hal_eeprom.c", "hal_irq_save();\n    EECR", "SREG;\n    EECR", EEPROM),
@@ -74,6 +75,13 @@ def start_after_the_watchdog_bit_may_take_its_time():
     for instead in ("    wdt_disable();\n", f"{OPEN}    WDTCSR = 0;\n", quarter_s):
         said, _ = probe("watchdog_probe", 8, ("hal/avr/hal_watchdog.c", "    wdt_disable();\n", instead), resets=2)
         assert said == "033", (instead, said)  # power on, then two bites (hal_watchdog.h)
+
+
+@test
+def causes_of_resets_add_up_until_they_are_cleared():
+    """A one leaves the flag of the power-on, which counts before others: the probe never learns that it was bitten."""
+    said, _ = probe("watchdog_probe", 7, ("hal/avr/hal_watchdog.c", "    MCUSR = 0;\n", "    MCUSR = _BV(PORF);\n"), resets=2)
+    assert len(said) > 3 and set(said) == {"0"}, said
 
 
 @test

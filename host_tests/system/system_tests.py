@@ -345,7 +345,7 @@ def refused_settings_end_the_run():
 
 MISBEHAVIOURS = {1: (3, "jump out of the program"), 2: (3, "access beyond RAM"), 3: (4, "illegal opcode"), 4: (5, "stack overrun"),
                  5: (6, "UART overrun"), 6: (7, "watchdog reset nobody expects"), 7: (8, "sleep with interrupts off"),
-                 8: (11, "START ahead of a STOP")}
+                 8: (11, "START ahead of a STOP"), 9: (11, "two-wire interrupt that is never answered")}
 
 
 @test

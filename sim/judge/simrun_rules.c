@@ -16,7 +16,10 @@ enum {
     BIT_EEPE = 0x02,
     BIT_EEMPE = 0x04,
     EEMPE_CYCLES = 4,
+    REG_SMCR = 0x53,
+    BIT_SE = 0x01,
     REG_MCUSR = 0x54,
+    BIT_PORF = 0x01,
     BIT_WDRF = 0x08,
     REG_WDTCSR = 0x60,
     BIT_WDE = 0x08,
@@ -27,8 +30,12 @@ enum {
     REG_TCNT1L = 0x84,
     REG_OCR1BH = 0x8B,
     REG_TWCR = 0xBC,
+    BIT_TWIE = 0x01,
+    BIT_TWEN = 0x04,
     BIT_TWSTO = 0x10,
     BIT_TWSTA = 0x20,
+    BIT_TWINT = 0x80,
+    TWI_VECTOR = 24,
     LED = 1 << 5,
     JUST_OPENED = -2, /* simavr's interrupt_state */
     WATCHED_MAX = 16
@@ -50,6 +57,7 @@ static uint64_t eempe_at;
 static uint64_t watchdog_bites = NEVER;
 static uint64_t wdce_until; /* writes to WDE and the period in WDTCSR take effect up to this cycle */
 static uint32_t opened_at;  /* the instruction after the one that enabled interrupts */
+static uint8_t causes_left; /* flags of MCUSR that the program has not cleared */
 static bool led_lit;
 static uint32_t led_flashes;
 
@@ -113,6 +121,23 @@ static void check_two_wire(uint8_t value)
     }
 }
 
+/* 22.5.5: TWINT asks for the interrupt as long as it is set. */
+static void on_two_wire(avr_irq_t *irq, uint32_t running, void *param)
+{
+    (void)irq;
+    (void)param;
+    uint8_t asks = BIT_TWINT | BIT_TWEN | BIT_TWIE;
+    if (running == 0 && (mcu->data[REG_TWCR] & asks) == asks) {
+        broken("the two-wire handler ends with TWINT set: it runs again at once, and again");
+    }
+}
+
+/* 11.9.1: a flag is cleared by writing zero to it; ones do not set it. */
+static void check_causes(uint8_t value)
+{
+    causes_left &= value;
+}
+
 static void look_at_led(void)
 {
     bool lit = (mcu->data[REG_DDRB] & mcu->data[REG_PORTB] & LED) != 0;
@@ -170,12 +195,23 @@ void rules_start(void)
     watch_writes(REG_EECR, check_eeprom);
     watch_writes(REG_WDTCSR, check_watchdog);
     watch_writes(REG_TWCR, check_two_wire);
+    watch_writes(REG_MCUSR, check_causes);
     watch_writes(REG_DDRB, NULL);
     watch_writes(REG_PORTB, NULL);
+    for (int i = 0; i < mcu->interrupts.vector_count; i++) {
+        if (mcu->interrupts.vector[i]->vector == TWI_VECTOR) {
+            avr_irq_register_notify(&mcu->interrupts.vector[i]->irq[AVR_INT_IRQ_RUNNING], on_two_wire, NULL);
+        }
+    }
 }
 
+/* 11.9.1: each cause adds its flag to those that are left; a power-on clears the others. */
 void rules_on_reset(void)
 {
+    if ((mcu->data[REG_MCUSR] & BIT_PORF) == 0) {
+        mcu->data[REG_MCUSR] |= causes_left;
+    }
+    causes_left = mcu->data[REG_MCUSR];
     bool by_watchdog = (mcu->data[REG_MCUSR] & BIT_WDRF) != 0;
     watchdog_bites = by_watchdog ? mcu->cycle + WATCHDOG_SHORTEST : NEVER;
     eempe_at = 0;
@@ -184,12 +220,15 @@ void rules_on_reset(void)
 }
 
 /*
- * 7.7: after SEI one more instruction runs before an interrupt. With another one between it and SLEEP, a wake-up can be
+ * 10.11.1: SLEEP sleeps only with SE set. 7.7: after SEI one more instruction runs before an interrupt. With another one between it and SLEEP, a wake-up can be
  * lost.
  */
 void rules_on_step(uint32_t from)
 {
     if (mcu->state == cpu_Sleeping && interrupts_on()) {
+        if ((mcu->data[REG_SMCR] & BIT_SE) == 0) {
+            broken("SLEEP without SE in SMCR: it does nothing");
+        }
         bool alone = mcu_opcode_at(from) == OPCODE_SLEEP && from == opened_at;
         if (!alone) {
             broken("SLEEP does not follow the SEI that lets interrupts in: a wake-up before it is lost");
