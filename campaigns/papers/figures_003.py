@@ -75,7 +75,7 @@ def figures(runs):
         errors = flown(arguments, flights)
         beside = [(f"{title.partition(': ')[0].removeprefix('Paper 003, ')}, {what} error of heading in {begin} to {end} s, degrees", said,
                    f"{heading_of(errors, what, begin, end):.2f}") for what, begin, end, _, said in printed]
-        words = f"{flights} flights: lines are the first, behind them the range of all. "
+        words = f"{flights} flights: lines are the first, behind them the range of all; the verdicts are of 200. "
         words += "" if printed else "No number of these figures is readable. "
         wanted = 1 if name == "003-5" else 3
         found.append(Drawn(name, title, 1.4 if wanted == 1 else 3, draw, (errors, printed, wanted), __file__,

@@ -21,6 +21,7 @@ CODE = ("lib/filters/src", "lib/tilt/src", "nav/lib", "host_tests/reference", "c
 TESTS = ("host_tests/filters", "host_tests/tools/campaigns", "host_tests/tools/design", "nav/tests")
 HEAD = ("claim", "verdict, row", "function", "test")
 DEFINITION = r"(?m)^(?:def |class |[a-zA-Z_][\w ]*[ *]){name}\(|^class {name}\b"
+PROOF = r"(?m)^(?:@test\ndef {name}\(|TEST\({name}\))"
 ABOUT = """Each claim and equation of the five papers: what became of it, the row or table that says so, the function that computes it and a test of
 that. Several verdicts: of several cases. The verdicts' meaning: [papers](../papers.md)."""
 PAGE = Results(FOLDER / "papers-index.md", "From a claim to its code", "make papers", ABOUT)
@@ -41,11 +42,11 @@ def entries(path=TABLE):
 
 
 def defined(line, cell, folders, what):
-    """A link to the file of a function or a test, `FILE NAME`, which must be defined there."""
+    """A link to the file of a function or a test, `FILE NAME`, which must be defined there; a test must be one that is run."""
     file, _, name = cell.partition(" ")
+    pattern = (PROOF if what == "test" else DEFINITION).format(name=re.escape(name))
     for path in (pathlib.Path(folder, file) for folder in folders):
-        text = path.read_text(encoding="utf-8") if path.is_file() else ""
-        if f"TEST({name})" in text or re.search(DEFINITION.format(name=re.escape(name)), text):
+        if path.is_file() and re.search(pattern, path.read_text(encoding="utf-8")):
             return f"[{name}](../../{path})"
     raise Fault(f"{line}: there is no {what} {name} in {file}")
 
@@ -63,13 +64,21 @@ def fits(row, cell):
         ("experiment", experiment), ("filter", name), ("number", metric), ("printed", " ".join(printed) or "*")))
 
 
+def errata(text):
+    """What stands under the heading of a paper's page."""
+    return text.partition("\n## Errata\n")[2].partition("\n## ")[0]
+
+
 def result(line, paper, cell, text):
     """The cell of verdict and row; text: of the paper's page of results."""
     kind, _, rest = cell.partition(" ")
     if cell.startswith("left out "):
         return f"left out: {cell[len('left out '):]}"
     if kind == "erratum":
-        return f"[erratum](../papers-{paper}.md#errata): {rest}"
+        place, _, words = rest.partition(": ")
+        if place not in errata(pathlib.Path(f"docs/papers-{paper}.md").read_text(encoding="utf-8")):
+            raise Fault(f"{line}: docs/papers-{paper}.md has no erratum of {place}")
+        return f"[erratum](../papers-{paper}.md#errata): {words}"
     page = document(paper).name
     if kind == "table":
         if f"\n## {rest}\n" not in text:

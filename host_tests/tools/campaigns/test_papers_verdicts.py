@@ -1,6 +1,7 @@
 """The judge of make papers: bands, and verdicts by the rule that docs/papers.md states; the pages as they are committed, in which no verdict disobeys
 its rule and no line of the index leads nowhere; each with a fault that must be named."""
 import pathlib
+import re
 import subprocess
 import sys
 import types
@@ -101,11 +102,23 @@ def what_the_index_names_must_be_there():
     line, paper, claim, row, function, proof = next(entry for entry in papers_index.entries() if entry[3].startswith("table1_start"))
     for broken, words in (((row + "x", function, proof), "no verdict on"), (("table Nothing", function, proof), "no table 'Nothing'"),
                           ((row, f"{function}_gone", proof), "no function"), ((row, "gone.c step", proof), "no function step in gone.c"),
-                          ((row, function, f"{proof}_gone"), "no test")):
+                          ((row, function, f"{proof}_gone"), "no test"),
+                          # a function is no test
+                          ((row, function, "test_figures.py save_small"), "no test"),
+                          (("erratum (99): gone", function, proof), "no erratum of (99)")):
         refused(papers.Fault, lambda: papers_index.lines([(line, paper, claim, *broken)]), words, line)
     path = pathlib.Path("build/papers/index.csv")
     path.write_text("[000]\na claim | a row | a function\n", encoding="utf-8")
     refused(papers.Fault, lambda: papers_index.entries(path), "index.csv:2", "left out WHY")
+
+
+@test
+def no_erratum_is_dropped():
+    """As many as have been found; a table with a row less is named."""
+    for paper, least in (("000", 7), ("001", 4), ("002", 18)):
+        rows = re.findall(r"(?m)^\| (?!place |---)", papers_index.errata(pathlib.Path(f"docs/papers-{paper}.md").read_text(encoding="utf-8")))
+        assert len(rows) >= least, f"docs/papers-{paper}.md: {len(rows)} errata, there were {least}"
+    assert papers_index.errata("a\n## Errata\n| b |\n## c\n| d |") == "| b |"
 
 
 @test
