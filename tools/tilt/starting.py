@@ -1,6 +1,7 @@
 """The steps of `tilt start`, from wiring to a picture, over the bench of `tilt board`. Each step prints what to do, can be skipped, and is repeated
 as often as the owner wants."""
 import collections
+import contextlib
 import re
 from types import SimpleNamespace
 
@@ -107,8 +108,9 @@ def calibrate(bench, _):
         bench.say("   Lay it on any side, wait for its line, then on the next one.")
         try:
             told(bench, "cal6", IN_FORCE, SIDES_S)
-        except (Failed, Quit, Repeat, Skip):
-            bench.type("cal6 stop")
+        except (Failed, KeyboardInterrupt, Quit, Repeat, Skip):
+            with contextlib.suppress(Failed):  # the port is gone
+                bench.type("cal6 stop")
             raise
 
 
@@ -116,7 +118,8 @@ def noise(bench, _):
     """The sensor's noise, at rest."""
     bench.say("   The board must lie still.")
     told(bench, "noise", "# noise z", TARE_S)
-    bench.say("   A sensor at rest has 1 LSB rms or less; far more is vibration, a loose wire or a bad supply. The filters measure it themselves.")
+    bench.say("   A sensor at rest has about 1 LSB rms up to 100 Hz, 3 at 800 Hz; far more is vibration, a loose wire or a bad supply. The filters "
+              "measure it themselves.")
 
 
 def rate(bench, state):
@@ -135,7 +138,7 @@ def recording(bench, state):
     """30 s into the file, as `tilt record` writes it."""
     bench.say(f"   Move the sensor as it will move in use, for {RECORD_S:.0f} s, into {state.path}.")
     choice(bench, "Enter starts the recording", ("",))
-    output = record.Output(state.path, state.force or state.recorded)
+    output = record.Output(state.path, state.force)
     recorder = Recorder(output.write)
     bench.forget()
     recorder.feed(b"\n" + protocol.HEADER.encode() + b"\n")
@@ -150,7 +153,8 @@ def recording(bench, state):
         recorder.finish()
     finally:
         output.close()
-        state.recorded = state.recorded or recorder.counts.rows > 0
+        state.force = state.force or output.file is not None  # to repeat the step
+        state.recorded = recorder.counts.rows > 0
     if not recorder.counts.rows:
         raise Failed("no row arrived: check the wiring, and type r to repeat")
     bench.say("   " + record.summary(recorder.counts, state.path).replace("\n", "\n   "))
