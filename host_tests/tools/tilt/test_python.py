@@ -72,6 +72,7 @@ class Interface(InFolder):
 
     def test_every_name_offered_has_type_hints(self):
         self.assertEqual(set(tilt.__all__), {"Stream", "TiltError", "filters", "parameters", "replay"})
+        self.assertLessEqual(set(tilt.__all__), set(dir(tilt)))
         for name in ("filters", "parameters", "replay"):
             signature = inspect.signature(getattr(tilt, name))
             self.assertNotIn(inspect.Signature.empty, [signature.return_annotation, *(one.annotation for one in signature.parameters.values())])
