@@ -5,12 +5,16 @@ set -eu
 if [ "$1" = check ]; then
     stream=$2 folder=$(dirname "$3")
     mkdir -p build/sim
-    if [ ! -r "$stream" ]; then
+    if [ ! -r "$stream" ] || [ -d "$stream" ]; then
         echo "sim: cannot read the stream $stream: give STREAM=file.csv; shipped ones are in sim/streams" >&2
         exit 2
     fi
     if [ ! -d "$folder" ]; then
         echo "sim: no folder $folder for OUT=$3: mkdir -p $folder" >&2
+        exit 2
+    fi
+    if [ -d "$3" ]; then
+        echo "sim: OUT=$3 is a folder: give a file in it, such as OUT=${3%/}/run.csv" >&2
         exit 2
     fi
     case ${RATE-100} in

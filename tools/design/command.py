@@ -11,13 +11,13 @@ from fractions import Fraction
 from tilt.options import Parser
 
 from . import configuration, nearest, pictures, report, switching
-from . import typed as typing
 from .given import Wrong, given_filter
 from .measure import sigma_of_stream
 from .response import Endless
 from .structure import Filter
 from .synthesis import (ERROR_MAX, ERROR_MIN, LEAST_SHAPE, REGIONS, Infeasible, NoneFound, Request, check_order, least_error, least_noise,
                         nearest_noise, ordinal, rounded)
+from .typed import typed
 
 EPILOG = """
 the structure, in the papers' letters
@@ -254,7 +254,7 @@ def configured(name, f, task, lsb_per_unit, fixed_a):
     except configuration.Unfit as problem:
         return [f"{name}: none: {problem}"], {"structure": name, "none": str(problem)}, None
     noise, error = float(made.filter.noise_gain()), float(made.filter.dynamic_error())
-    on_board = typing.typed(made, rate_hz, task.error_max, noise_max)
+    on_board = typed(made, rate_hz, task.error_max, noise_max)
     lines = on_board.lines if on_board else []
     notes = configuration.notes_of(made, rate_hz, lines) + made.notes
     text = [f"{name}:", f"    {made.initialiser()}",

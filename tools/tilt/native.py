@@ -166,11 +166,11 @@ def parameters(name, rate_dhz):
 def rate_of(stream, asked_hz=None):
     """The output data rate in 0.1 Hz: the one asked for, else the firmware's rate nearest to the recording's."""
     if asked_hz is not None:
-        if round(asked_hz * 10) not in RATES_DHZ or round(asked_hz * 10) != asked_hz * 10:
-            raise TiltError(f"--rate {asked_hz:g}: choose from {' '.join(f'{rate / 10:g}' for rate in RATES_DHZ)}")
+        if asked_hz * 10 not in RATES_DHZ:
+            raise TiltError(f"rate {asked_hz:g}: choose from {' '.join(f'{rate / 10:g}' for rate in RATES_DHZ)}")
         return round(asked_hz * 10)
     if not stream.rate_hz:
-        raise TiltError(f"{stream.path}: all rows have the same time, so the rate is unknown: give --rate HZ")
+        raise TiltError(f"{stream.path}: all rows have the same time, so the rate is unknown: give --rate HZ, in Python rate_hz=HZ")
     return min(RATES_DHZ, key=lambda rate: abs(np.log(rate / 10 / stream.rate_hz)))
 
 
@@ -212,8 +212,8 @@ def _replay_one(given, name, rate_dhz, range_g, out, values=None):
     rows = library().libtilt_replay(ctypes.byref(given.c), filters().index(name), rate_dhz, range_g, stored.ctypes.data, changed.ctypes.data,
                                     out.ctypes.data, len(out))
     if rows == -3:
-        given = ", ".join(f"{key} {value:g}" for key, value in values.items())
-        raise TiltError(f"{name} refuses {given}: docs/protocol.md lists what goes together")
+        typed = ", ".join(f"{key} {value:g}" for key, value in values.items())
+        raise TiltError(f"{name} refuses {typed}: docs/protocol.md lists the legal values; legal ones that do not go together are refused too")
     if rows < 0:
         raise MemoryError("libtilt_replay: " + ("no memory" if rows == -2 else f"more rows than {len(out)}"))
     return rows

@@ -45,7 +45,7 @@ def replay(stream: Stream | str | os.PathLike, filter: str, *, rate_hz: float | 
         stream = Stream.read(stream)
     if range_g not in RANGES_G:
         raise TiltError(f"range_g {range_g}: choose from {' '.join(map(str, RANGES_G))}")
-    tables = runs(stream, [known(filter)], native.rate_of(stream, rate_hz), range_g, values=values)
+    tables = runs(stream, [known(filter)], native.rate_of(stream, rate_hz), int(range_g), values=values)
     rows = tables[filter]
     lsb = dict(zip(("x_lsb", "y_lsb", "z_lsb"), rows["lsb"].T))
     return pd.DataFrame({"t_us": rows["t_us"] + stream.start_us, **lsb, **columns_of(tables), **truth_of(stream, rows)})

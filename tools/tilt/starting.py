@@ -1,6 +1,7 @@
 """The steps of `tilt start`, from wiring to a picture, over the bench of `tilt board`. Each step prints what to do, can be skipped, and is repeated
 as often as the owner wants."""
 import collections
+import contextlib
 import re
 from types import SimpleNamespace
 
@@ -49,7 +50,7 @@ def choice(bench, question, answers):
         bench.say(f"   '{typed}' is no answer here: {' '.join(answer or 'Enter' for answer in answers)}, s to skip, r to repeat, q to quit")
 
 
-def told(bench, command, last, limit_s=ANSWER_S):
+def answered(bench, command, last, limit_s=ANSWER_S):
     """Types the command and prints what the board says, to a line that begins with `last`, which is the result; Failed as in watch.said."""
     bench.type(command)
     busy = 0
@@ -78,9 +79,9 @@ def wiring(bench, _):
     if found.get("fault"):
         raise Failed(f"fault {found['fault']}: {bench.faults.get(found['fault'], 'docs/faults.md lists what to check')}")
     if state and state[1] != "streaming":
-        told(bench, "go", "# going")
+        answered(bench, "go", "# going")
     if bench.settings.get("mode") == "plot":
-        told(bench, "mode csv", "# mode")
+        answered(bench, "mode csv", "# mode")
     roll, pitch = watch.row_with_sample(bench, ROWS_S).row.values[7:9]
     bench.say(f"   The sensor answers: roll {roll / 100:.1f}, pitch {pitch / 100:.1f} degrees, no fault.")
     failed = sum(number for name, number in found.items() if name in OF_THE_BUS)
@@ -91,7 +92,7 @@ def wiring(bench, _):
 def selftest(bench, _):
     """The sensor's own force, on each axis."""
     bench.say("   The board must lie still.")
-    last = told(bench, "selftest", "# selftest z", SELFTEST_S)
+    last = answered(bench, "selftest", "# selftest z", SELFTEST_S)
     if any("FAIL" in line for line in [*bench.lines, last] if line.startswith("# selftest")):
         raise Failed("an axis is out of the data sheet's limits: feed the sensor 3.3 V, and hold it still; else it is broken")
 
@@ -102,21 +103,23 @@ def calibrate(bench, _):
     kind = choice(bench, "cal6 or tare", ("cal6", "tare"))
     if kind == "tare":
         bench.say("   Do not touch it.")
-        told(bench, "tare", IN_FORCE, TARE_S)
+        answered(bench, "tare", IN_FORCE, TARE_S)
     else:
         bench.say("   Lay it on any side, wait for its line, then on the next one.")
         try:
-            told(bench, "cal6", IN_FORCE, SIDES_S)
-        except (Failed, Quit, Repeat, Skip):
-            bench.type("cal6 stop")
+            answered(bench, "cal6", IN_FORCE, SIDES_S)
+        except (Failed, KeyboardInterrupt, Quit, Repeat, Skip):
+            with contextlib.suppress(Failed):  # the port is gone
+                bench.type("cal6 stop")
             raise
 
 
 def noise(bench, _):
     """The sensor's noise, at rest."""
     bench.say("   The board must lie still.")
-    told(bench, "noise", "# noise z", TARE_S)
-    bench.say("   A sensor at rest has 1 LSB rms or less; far more is vibration, a loose wire or a bad supply. The filters measure it themselves.")
+    answered(bench, "noise", "# noise z", TARE_S)
+    bench.say("   A sensor at rest has about 1 LSB rms up to 100 Hz, 3 at 800 Hz; far more is vibration, a loose wire or a bad supply. The filters "
+              "measure it themselves.")
 
 
 def rate(bench, state):
@@ -124,18 +127,18 @@ def rate(bench, state):
     now = watch.setting(bench, "rate")
     typed = choice(bench, f"Samples per second, of {' '.join(RATES)} (Enter keeps {now})", ("", *RATES))
     if typed and typed != now:
-        told(bench, f"rate {typed}", "# rate")
+        answered(bench, f"rate {typed}", "# rate")
         bench.say("   Rows that the line cannot carry are left out; `baud 500000` carries all of 400 Hz.")
         collections.deque(bench.events(ODR_S), 0)
     state.rate_hz = float(typed or now)
-    told(bench, "odr", "# odr")
+    answered(bench, "odr", "# odr")
 
 
 def recording(bench, state):
     """30 s into the file, as `tilt record` writes it."""
     bench.say(f"   Move the sensor as it will move in use, for {RECORD_S:.0f} s, into {state.path}.")
     choice(bench, "Enter starts the recording", ("",))
-    output = record.Output(state.path, state.force or state.recorded)
+    output = record.Output(state.path, state.force)
     recorder = Recorder(output.write)
     bench.forget()
     recorder.feed(b"\n" + protocol.HEADER.encode() + b"\n")
@@ -150,7 +153,8 @@ def recording(bench, state):
         recorder.finish()
     finally:
         output.close()
-        state.recorded = state.recorded or recorder.counts.rows > 0
+        state.force = state.force or output.file is not None  # to repeat the step
+        state.recorded = recorder.counts.rows > 0
     if not recorder.counts.rows:
         raise Failed("no row arrived: check the wiring, and type r to repeat")
     bench.say("   " + record.summary(recorder.counts, state.path).replace("\n", "\n   "))
@@ -167,7 +171,7 @@ def tuned(bench, state):
     bench.say("   " + "\n".join(tune.lines(answer)).replace("\n", "\n   "))
     if answer["commands"] and choice(bench, "Type these into the board? y or n", ("y", "n")) == "y":
         for command in answer["commands"]:
-            told(bench, command, f"# {command.split()[0]}")
+            answered(bench, command, f"# {command.split()[0]}")
 
 
 def plotted(bench, state):
@@ -183,7 +187,7 @@ def plotted(bench, state):
 def save(bench, _):
     """Everything set above, into the EEPROM."""
     if choice(bench, "Keep the calibration and the values when the power is off? y or n", ("y", "n")) == "y":
-        told(bench, "save", "# saved")
+        answered(bench, "save", "# saved")
 
 
 STEPS = (("wiring", wiring), ("self-test", selftest), ("calibration", calibrate), ("noise", noise), ("rate", rate), ("recording", recording),

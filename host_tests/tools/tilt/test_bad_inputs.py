@@ -69,8 +69,9 @@ DESIGN = "design --rate 100 --sigma 2"
 # (command line, status, what it says, the remedy included): programs besides tilt
 PROGRAMS = (
     ("make sim RATE=abc", 2, f"sim: RATE=abc: {RATES}"), ("make sim RATE=90", 2, RATES), ("make sim RATE=100Hz", 2, RATES),
-    ("make sim RATE=", 2, RATES),
+    ("make sim RATE=", 2, RATES), ("make sim RATE=0", 2, RATES), ("make sim RATE=1e9", 2, RATES),
     ("make sim STREAM=missing", 2, "give STREAM=file.csv"), ("make sim STREAM=", 2, "give STREAM=file.csv"),
+    ("make sim STREAM=DIR", 2, "give STREAM=file.csv"), ("make sim OUT=DIR", 2, "is a folder: give a file in it"),
     ("make sim OUT=no/run.csv", 2, "mkdir -p "), ("make sim FILTER=foo", 2, f"filters: {DEFAULT}"),
     ("make sim STREM=x.csv", 2, "did you mean STREAM?"),
     ("make sim RTAE=50", 2, "did you mean RATE?"), ("make sim FILTRE=x", 2, "did you mean FILTER"), ("make help XYZZY=1", 2, "`make help` lists"),

@@ -15,7 +15,7 @@ from unittest import mock
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-from board_support import ALL, FIRMWARE_SAYS, CommandCase, Desk, Model, banner, check, raises, rows  # noqa: E402
+from board_support import ALL, FIRMWARE_SAYS, GONE, CommandCase, Desk, Model, banner, check, raises, rows  # noqa: E402
 from fake_board import BANNER, FakeBoard, until  # noqa: E402
 from tilt.errors import TiltError  # noqa: E402
 from tilt.realboard import owner as owner_module  # noqa: E402
@@ -160,6 +160,15 @@ class Meeting(unittest.TestCase):
         self.assertEqual(desk.sent.count("version"), 3)  # that of `settings` and of `status` too
         with self.assertRaisesRegex(TiltError, "nothing received in 8 s"):
             meet(Desk().bench(), "port")
+
+    def test_what_is_typed_meanwhile_waits(self):
+        desk = Desk([(0.5, banner())], Model())
+        desk.keys += ["s", "r"]
+        self.assertEqual((meet(desk.bench(), "port")[0], list(desk.keys)), (FIRMWARE_SAYS, ["s", "r"]))
+
+    def test_a_port_that_vanishes_is_one_sentence(self):
+        with self.assertRaisesRegex(TiltError, "port: the port is gone: check the cable"):
+            meet(Desk([(0.5, GONE)], Model()).bench(), "port")
 
     def test_a_fault_from_the_beginning_is_said(self):
         desk = Desk([(0.5, banner())], Model(fault=1))

@@ -61,7 +61,8 @@ class Interface(InFolder):
 
     def test_what_is_wrong_is_one_sentence(self):
         for values, words in (({"gate": 99}, "gate 99: 0 or 1 to 16"), ({"foo": 1}, "choose from r q gate"),
-                              ({"reacquire": 4}, "refuses reacquire 4"), ({"rate_hz": 90}, "choose from 12.5"),
+                              ({"reacquire": 4}, "refuses reacquire 4"), ({"rate_hz": 90}, "rate 90: choose from 12.5"),
+                              ({"rate_hz": np.nan}, "choose from 12.5"), ({"rate_hz": np.inf}, "choose from 12.5"), ({"gate": np.nan}, "gate nan: "),
                               ({"range_g": 3}, "choose from 2 4 8 16")):
             with self.assertRaisesRegex(tilt.TiltError, re.escape(words)):
                 tilt.replay(STREAM, ROBUST, **values)
@@ -71,6 +72,7 @@ class Interface(InFolder):
 
     def test_every_name_offered_has_type_hints(self):
         self.assertEqual(set(tilt.__all__), {"Stream", "TiltError", "filters", "parameters", "replay"})
+        self.assertLessEqual(set(tilt.__all__), set(dir(tilt)))
         for name in ("filters", "parameters", "replay"):
             signature = inspect.signature(getattr(tilt, name))
             self.assertNotIn(inspect.Signature.empty, [signature.return_annotation, *(one.annotation for one in signature.parameters.values())])

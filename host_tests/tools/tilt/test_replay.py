@@ -235,7 +235,7 @@ class Command(Case):
         dead = self.made(np.full((20, 3), -1))
         for words, said in (([good, "--filter", f"{PLAIN},kx"], f"--filter: no filter 'kx': choose from {DEFAULT} {PLAIN} "),
                             ([good, "--filter", f"{PLAIN},{PLAIN}"], f"--filter: {PLAIN} is given twice: give it once"),
-                            ([good, "--rate", "101"], "--rate 101: choose from 12.5 25 50 "),
+                            ([good, "--rate", "101"], "tilt replay: rate 101: choose from 12.5 25 50 "),
                             ([dead], "made.csv: no usable row: every row is missing or reads -1,-1,-1"),
                             (["absent.csv"], "absent.csv: cannot be read: ")):
             status, out, err = self.run_it(*words)

@@ -36,6 +36,8 @@ class Person:
     def typed(self):
         if self.keys and self.keys[0] is None:
             raise Quit
+        if self.keys and self.keys[0] == "^C":
+            raise KeyboardInterrupt
         return self.keys.popleft() if self.keys else None
 
     def say(self, text):
@@ -89,7 +91,7 @@ class Started(InFolder):
     def test_who_does_everything_wrong_is_led_on(self):
         """The board moves, its sensor was off at first, answers are nonsense, steps are repeated, what needs a recording comes without one."""
         answers = {"wiring": ["what?", *[""] * 400], "self-test": ["s"], "calibration": ["both", "tare", "y", "r", "cal6|s"], "noise": ["", "s"],
-                   "rate": ["90", "fast", "100 Hz", "100"], "recording": ["no", "s"], "save": ["perhaps", "n"]}
+                   "rate": ["90", "fast", "100 Hz", "100"], "recording": ["no", "|r", "|s"], "save": ["perhaps", "n"]}
         moving = self.folder / "moving.csv"
         moving.write_text("t_us,x,y,z\n" + "".join(f"{10_000 * i},{round(150 * math.sin(i / 15))},0,{210 + i % 3}\n" for i in range(2000)))
         status, said, err = self.led(moving, answers, faults=["1ms:unplug:4500"])
@@ -98,11 +100,18 @@ class Started(InFolder):
                       "refused 'noise': moving", "'fast' is no answer here", "'perhaps' is no answer here: y n", "tune: skipped: nothing is recorded",
                       "plot: skipped: nothing is recorded", "calibration: skipped"):
             self.assertIn(words, said)
-        self.assertNotIn("Traceback", said)
+        self.assertNotRegex(said, "Traceback|exists already")
 
     def test_who_quits_is_told_what_stays(self):
         status, said, _ = self.led(REST, {"wiring at once": ["q"]})
         self.assertEqual(status, 1)
+        self.assertIn("what was set stays until the power goes off", said)
+
+    def test_ctrl_c_says_it_too_and_stops_cal6(self):
+        answers = {f"{step} at once": ["s"] for step in STEPS[:2]} | {"calibration": ["cal6|^C"]}
+        with mock.patch.object(starting.Guided, "type", autospec=True, side_effect=starting.Guided.type) as typed:
+            status, said, err = self.led(REST, answers)
+        self.assertEqual((status, err, typed.call_args.args[1]), (130, "", "cal6 stop"), said)
         self.assertIn("what was set stays until the power goes off", said)
 
     def test_what_cannot_be_used_is_one_line(self):

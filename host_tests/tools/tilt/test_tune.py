@@ -140,7 +140,7 @@ class Commands(Case):
     def test_what_cannot_be_is_told(self):
         self.write(turned(np.random.default_rng(4), 60.0, 0.2)[0])
         for words, said in ((["--filter", "kx"], "no filter 'kx': choose from"), (["--filter", f"{PLAIN},{ROBUST}"], "give one filter"),
-                            (["--rate", "90"], "--rate 90: choose from")):
+                            (["--rate", "90"], "rate 90: choose from")):
             status, out, err = self.tune(*words)
             self.assertEqual((status, out), (2, ""))
             self.assertIn(said, err)

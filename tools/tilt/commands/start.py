@@ -3,7 +3,7 @@ tune, plot. Each step says what to do and prints what the board answers.
 
 At any time s skips the step, r repeats it, q quits. Nothing lasts over power-off unless the last step saves it. docs/start.md has it all.
 
-Status: 0 every step is done or skipped, 1 you quit, 2 the port or the file cannot be used.
+Status: 0 every step is done or skipped, 1 you quit, 2 the port or the file cannot be used, 130 Ctrl-C.
 """
 import datetime
 import pathlib
@@ -44,8 +44,10 @@ def run(args):
         firmware, bench.settings = meet(bench, args.port)
         bench.say(f"{firmware[2:]}\nAt any time: s skips a step, r repeats it, q quits.")
         results = guide(bench, SimpleNamespace(path=path, force=args.force, recorded=False, rate_hz=None))
-    except Quit:
-        person.say("\nquit: what was set stays until the power goes off; tilt start begins again")
+    except (KeyboardInterrupt, Quit) as why:
+        person.say("\nquit: what was set stays until the power goes off; to start over: tilt start")
+        if isinstance(why, KeyboardInterrupt):
+            raise
         return 1
     finally:
         board.end()

@@ -92,7 +92,7 @@ class Bench:
     """next() is the only access to input.
 
     numbers: what the judge has measured so far; lines: the last raw ones of the check; limit_s: time limit of each wait; settings: name -> value
-    as the board had them at the beginning; deaf: the owner is ignored while settings are restored."""
+    as the board had them at the beginning; deaf: the owner is not heard, while the board is met and while settings are restored."""
 
     def __init__(self, wire, owner):
         self.wire, self.owner = wire, owner

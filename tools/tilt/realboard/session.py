@@ -15,7 +15,19 @@ LONGEST_SHOWN = 80
 
 
 def meet(bench, name):
-    """(first line of the banner, name -> value of its settings). TiltError unless it is a board with this firmware."""
+    """(first line of the banner, name -> value of its settings). TiltError unless it is a board with this firmware. What the owner types waits:
+    there is nothing to skip or to repeat yet."""
+    bench.deaf = True
+    try:
+        return met(bench, name)
+    except Failed as why:
+        raise TiltError(f"{name}: the port is gone: check the cable and its plugs") from why
+    finally:
+        bench.deaf = False
+
+
+def met(bench, name):
+    """See meet; Failed if nothing can be typed."""
     began_s, strange = bench.now(), []
     ask_s, until_s = began_s + VERSION_AFTER_S, began_s + MEET_S
     while bench.now() < until_s:
