@@ -41,7 +41,8 @@ def draw_one(axes, title, row, found):
         printed_level(axes, [PERIOD_S * begin, PERIOD_S * end], (sigma, -sigma))
     printed_level(axes, [PERIOD_S * UP, PERIOD_S * DOWN], (lag,))
     printed_level(axes, [PERIOD_S * DOWN, PERIOD_S * STRAIGHT], (-lag,))
-    printed_words(axes, 69.5, 0.98, f"sigma: printed {sigma:g}, ours {ours:.2f}\nlag: printed {lag:g}, ours {round(lagging, 2) + 0.0:.2f}", ha="right")
+    words = f"sigma: printed {sigma:g}, ours {ours:.2f}\nlag: printed {lag:g}, ours {round(lagging, 2) + 0.0:.2f}"
+    printed_words(axes, 69.5, 0.98, words, ha="right")
     panel(axes, f"{figure}: {name}, {title}", "time in seconds", "error of altitude in m")
     axes.set_xlim(0.0, 70.0)
     axes.set_ylim(-2.4, 2.9)

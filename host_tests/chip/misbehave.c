@@ -36,6 +36,12 @@ static void __attribute__((constructor)) start_ahead_of_a_stop(void) /* ahead of
 
 #if CASE == 9
 EMPTY_INTERRUPT(TWI_vect)
+
+static void __attribute__((constructor)) start_and_never_answer(void)
+{
+    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWIE) | _BV(TWSTA);
+    sei();
+}
 #endif
 
 int main(void)
@@ -64,9 +70,6 @@ int main(void)
     cli();
     sleep_enable();
     sleep_cpu();
-#elif CASE == 9
-    TWCR = _BV(TWINT) | _BV(TWEN) | _BV(TWIE) | _BV(TWSTA);
-    sei();
 #endif
     for (;;) {
     }

@@ -220,8 +220,8 @@ void rules_on_reset(void)
 }
 
 /*
- * 10.11.1: SLEEP sleeps only with SE set. 7.7: after SEI one more instruction runs before an interrupt. With another one
- * between it and SLEEP, a wake-up can be lost.
+ * 10.11.1: SLEEP sleeps only with SE set. 7.7: after SEI one more instruction runs before an interrupt. With another
+ * one between it and SLEEP, a wake-up can be lost.
  */
 void rules_on_step(uint32_t from)
 {

@@ -99,7 +99,8 @@ def ran(words):
         return printed(inside[words[0]], words[1:])
     if words[:1] not in (["make"], ["simrun"]):
         return run_tilt(*words)
-    plain = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS"))}
+    typed = {word.partition("=")[0] for word in os.environ.get("MAKEFLAGS", "").split() if "=" in word}  # to the make that runs the tests
+    plain = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS")) and name not in typed}
     command = ["make", *words[1:]] if words[0] == "make" else ["build/sim/simrun", *words[1:]]
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=plain)
     return done.returncode, done.stdout, re.sub(r"^make: \*\*\* \[.*\n", "", done.stderr, flags=re.M)
