@@ -1,5 +1,6 @@
 # A release: dist/, from a clean tree whose pages of measurements are those of its sources. Archives carry the time of the commit.
-DIST := dist
+# fixed: it is emptied
+override DIST := dist
 R    := $(B)/release
 RELEASE_16MHZ := everyday=$(R)/uno/firmware.hex $(foreach s,$(filter-out everyday,$(FILTER_SETS)),$(s)=$(R)/uno/$(s)/firmware.hex) \
                  small=$(R)/promini/firmware.hex nav=$(R)/uno/nav/firmware.hex

@@ -250,7 +250,7 @@ install_one() {
 }
 
 install_tilt() {
-    echo "deps: installing with pip into $venv: the command tilt (pandas scipy matplotlib pyserial tqdm)"
+    echo "deps: installing with pip into $venv: the command tilt and its packages"
     if [ ! -x "$venv/bin/python" ]; then
         python3 -m venv "$venv" > "$log" 2>&1 ||
             fail "cannot make $venv ($(tail -n 1 "$log")): $(how_to_supply python3-venv)"
