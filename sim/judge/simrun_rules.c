@@ -55,9 +55,10 @@ static watched_t watched[WATCHED_MAX];
 static size_t watched_count;
 static uint64_t eempe_at;
 static uint64_t watchdog_bites = NEVER;
-static uint64_t wdce_until; /* writes to WDE and the period in WDTCSR take effect up to this cycle */
-static uint32_t opened_at;  /* the instruction after the one that enabled interrupts */
-static uint8_t causes_left; /* flags of MCUSR that the program has not cleared */
+static uint64_t wdce_until;    /* writes to WDE and the period in WDTCSR take effect up to this cycle */
+static uint32_t opened_at;     /* the instruction after the one that enabled interrupts */
+static bool two_wire_answered; /* by a write of one to TWINT in its handler */
+static uint8_t causes_left;    /* flags of MCUSR that the program has not cleared */
 static bool led_lit;
 static uint32_t led_flashes;
 
@@ -119,17 +120,19 @@ static void check_two_wire(uint8_t value)
     if ((mcu->data[REG_TWCR] & BIT_TWSTO) != 0 && (value & BIT_TWSTA) != 0) {
         broken("a START is asked for while a STOP is on its way");
     }
+    two_wire_answered = two_wire_answered || (value & BIT_TWINT) != 0;
 }
 
-/* 22.5.5: TWINT asks for the interrupt as long as it is set. */
+/* 22.5.5: TWINT asks for the interrupt until a one is written to it. After that it may be set again at once. */
 static void on_two_wire(avr_irq_t *irq, uint32_t running, void *param)
 {
     (void)irq;
     (void)param;
     uint8_t asks = BIT_TWINT | BIT_TWEN | BIT_TWIE;
-    if (running == 0 && (mcu->data[REG_TWCR] & asks) == asks) {
-        broken("the two-wire handler ends with TWINT set: it runs again at once, and again");
+    if (running == 0 && !two_wire_answered && (mcu->data[REG_TWCR] & asks) == asks) {
+        broken("the two-wire handler ends without clearing TWINT: it runs again at once, and again");
     }
+    two_wire_answered = false;
 }
 
 /* 11.9.1: a flag is cleared by writing zero to it; ones do not set it. */
