@@ -49,7 +49,9 @@ counted coverage
 counted fuzz SECONDS=600
 step bench
 step papers
+step figures
 step default
+step comparison
 step robust
 step synthesised
 step structure

@@ -47,7 +47,7 @@ SCRIPTS = [
     plain("test_fault_page"), plain("test_limits"), plain("test_bench"), plain("test_bench_parts", "system_images"),
     plain("test_layout", "system_images"), plain("test_mutants"), plain("test_progress"),
     plain("test_papers", "paper_programs"), plain("test_papers_synthesis", "paper_programs"), plain("test_papers_verdicts", "paper_programs"),
-    plain("test_schedule"),
+    packages("test_figures", "paper_programs"), packages("test_comparison", "paper_programs"), plain("test_schedule"),
     plain("test_pages"), plain("test_page_sources"), plain("test_steps"), plain("test_make_words"), plain("test_proved"),
     plain("test_default"), plain("test_default_streams"), plain("test_images"),
     plain("test_run_tests", "system_images"), plain("test_faults", "system_images"),
