@@ -21,7 +21,7 @@ PROGRAMS = {
                  "line_is_idle", "start_after_the_watchdog", "divider_is_the_nearest", "led_on_d13", "start_waits_for_a_stop",
                  "line_with_a_damaged", "storm_on_int1_keeps", "int1_that_flickers", "storm_has_one_number", "random_bursts_of_edges",
                  "glitch_on_int1", "held_high_int1", "bus_fault_per_sample", "slow_wires_stretch", "sda_too_slow_for_the_master",
-                 "i2c_100_is_slow", "settings_are_in_force", "race_on_a_sound_bus", "nothing_lost_100_hz_minus_777_ppm_sprf"),
+                 "i2c_100_is_slow", "settings_are_in_force", "race_on_a_sound_bus", "nothing_lost_100_hz_minus"),
     "hang/firmware": ("hung_loop_is_reset", "hung_filtering_is_reset", "test_resets.py:each_cause", "test_resets.py:watchdog_resets_twice",
                       "test_resets.py:a_loop_of_watchdog_resets"),
 }
