@@ -2,8 +2,8 @@
 C := $(B)/coverage
 # the supervision of sensor and stages is judged beside lib, and the navigation image's link (campaigns/coverage/nav_lib_coverage.mk)
 SUPERVISION   := $(wildcard $(addprefix firmware/*/,sensor_watch.c health.c pipeline.c coast.c gravity.c supervisor.c))
-# test_nav_flight, a minute of flights, runs no line of nav/lib that the short ones leave
-COVERAGE_SRC   := $(filter-out nav/tests/test_nav_flight.c,$(TEST_SRC))
+# test_nav_flight, a minute of flights, runs no line of nav/lib that the short ones leave, test_wokwi none of lib
+COVERAGE_SRC   := $(filter-out nav/tests/test_nav_flight.c host_tests/wokwi/test_wokwi.c,$(TEST_SRC))
 COVERAGE_TESTS := $(addprefix $(C)/,$(basename $(notdir $(COVERAGE_SRC))))
 
 # unoptimised, so that a line is a line; the tests too, for what they inline from the headers of lib; gcovr keeps what is judged
