@@ -17,7 +17,7 @@ from unittest import mock
 
 from fake_board import until
 from laws import DEFAULT
-from tilt_case import InFolder, run_tilt
+from tilt_case import InFolder, port_of, run_tilt
 from tilt.errors import TiltError
 from tilt.port import Port
 from tilt.realboard.bench import Bench, Failed, Seen, seen_of
@@ -221,7 +221,7 @@ class Simulated:
         command = [SIMRUN, "--fw", FIRMWARE, "--in", str(stream), "--out", str(folder / "all.csv"), "--eeprom", str(folder / "eeprom.bin"), "--pty",
                    "--loop", "--expect-resets", "99", *options]
         self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)  # pylint: disable=consider-using-with
-        self.fd = os.open(next(line for line in self.process.stderr if "UART on" in line).split()[-1], os.O_RDWR | os.O_NOCTTY)
+        self.fd = os.open(port_of(self.process), os.O_RDWR | os.O_NOCTTY)
         tty.setraw(self.fd)
         self.typed = 0
 

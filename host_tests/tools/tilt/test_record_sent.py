@@ -12,7 +12,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-from tilt_case import InFolder  # noqa: E402
+from tilt_case import InFolder, port_of  # noqa: E402
 from tilt import cli  # noqa: E402
 
 SIMRUN, FIRMWARE = "build/sim/simrun", "build/uno/firmware.elf"
@@ -26,7 +26,7 @@ class Sent(InFolder):
         out, err, file = io.StringIO(), io.StringIO(), self.folder / "recorded.csv"
         with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as board:
             try:
-                name = next(line for line in board.stderr if "UART on" in line).split()[-1]
+                name = port_of(board)
                 with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
                     status = cli.main(["record", name, "-o", str(file), "--seconds", "2", *(word for text in commands for word in ("--send", text))])
             finally:

@@ -20,6 +20,7 @@ from tilt import cli  # noqa: E402
 from tilt import port as port_module  # noqa: E402
 from tilt.commands import record  # noqa: E402
 from tilt.recorder import Recorder  # noqa: E402
+from tilt_case import port_of  # noqa: E402
 
 
 class Typed(test_record.Case):
@@ -128,7 +129,7 @@ class Simulated(test_record.Case):
         command = [self.SIMRUN, "--fw", self.FIRMWARE, "--in", self.STREAM, "--out", str(self.folder / "all.csv"), "--pty", "--loop"]
         with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as board:
             try:
-                name = next(line for line in board.stderr if "UART on" in line).split()[-1]
+                name = port_of(board)
                 with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
                     status = cli.main(["record", name, "-o", str(self.file), "--seconds", "1", *words])
             finally:

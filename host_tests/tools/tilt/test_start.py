@@ -16,7 +16,7 @@ from unittest import mock
 sys.dont_write_bytecode = True
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from laws import DEFAULT  # noqa: E402
-from tilt_case import InFolder, run_tilt  # noqa: E402
+from tilt_case import InFolder, port_of, run_tilt  # noqa: E402
 from tilt import cli, starting, stream  # noqa: E402
 from tilt.realboard import owner  # noqa: E402
 from tilt.realboard.bench import Quit  # noqa: E402
@@ -65,7 +65,7 @@ class Started(InFolder):
         with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as board, mock.patch.object(owner, "Owner", lambda: person), \
                 mock.patch.object(starting, "RECORD_S", 2.0), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
             try:
-                name = next(line for line in board.stderr if "UART on" in line).split()[-1]
+                name = port_of(board)
                 status = cli.main(["start", name, "-o", str(self.folder / "first.csv"), *words])
             finally:
                 board.terminate()

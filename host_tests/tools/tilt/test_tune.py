@@ -20,7 +20,7 @@ sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 from fake_board import BANNER, HEADER, FakeBoard, rows  # noqa: E402
 from laws import DEFAULT, LIGHT, PLAIN, ROBUST  # noqa: E402
 from test_compare_recordings import NO_RECORDINGS, beginning, recordings  # noqa: E402
-from tilt_case import InFolder, run_tilt  # noqa: E402
+from tilt_case import InFolder, port_of, run_tilt  # noqa: E402
 from tilt import fitting, native, smoother, stream  # noqa: E402
 from tilt.commands import tune  # noqa: E402
 
@@ -181,7 +181,7 @@ class Commands(Case):
         command = [SIMRUN, "--fw", FIRMWARE, "--in", "sim/streams/tilt-fast.csv", "--out", self.folder / "all.csv", "--pty", "--loop"]
         with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as board:
             try:
-                name = next(line for line in board.stderr if "UART on" in line).split()[-1]
+                name = port_of(board)
                 answer = self.answer("--filter", PLAIN, "--apply", name)
             finally:
                 board.terminate()

@@ -22,6 +22,11 @@ def run_tilt(*words):
     return printed(cli.main, words)
 
 
+def port_of(simrun):
+    """The terminal of a running `simrun --pty`, as soon as it is there."""
+    return next(line for line in simrun.stderr if "UART on" in line).split()[-1]
+
+
 class InFolder(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
