@@ -13,7 +13,7 @@ PLAIN = ["-w", "-O1", "-fPIC", "-fno-semantic-interposition", "-fno-plt"]
 # a breach of C's rules ends the program as it does in make test, by a trap: no library to start, nothing to print
 VARIANTS = {"ubsan": ["-fsanitize=undefined", "-fsanitize-undefined-trap-on-error"],
             "asan": ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]}
-NOT_OF_THE_PRODUCT = {"test_simrun_judge"}  # of the simulator
+NOT_OF_THE_PRODUCT = {"test_simrun_judge", "test_wokwi"}  # of the simulator and of its chip for Wokwi
 HANG_TIMES, HANG_MIN_S = 10, 1
 REFERENCES = ("host_tests/reference/", "nav/tests/reference_")
 # Unity's last word on each test function: one that failed has judged the mutant, the others of the program need not run
