@@ -107,7 +107,7 @@ def header(named):
     plain = sum(len(row) + 1 for row in rows)
     return f"""/*
  * Written by mk/scripts/pack_texts.py from reply_texts.h: {len(rows)} texts of {plain} bytes in {len(flat)}, and {len(pairs)} pairs. A byte from
- * PACKED_PAIR_FIRST on stands for the two of its pair, which may be such bytes again, PACKED_DEPTH deep at most.
+ * PACKED_PAIR_FIRST on is the two of its pair, which may be such bytes again, PACKED_DEPTH deep at most.
  */
 #ifndef REPLY_PACKED_H
 #define REPLY_PACKED_H
