@@ -94,7 +94,7 @@ check-texts:
 	@mkdir -p $(CHK)
 	@python3 mk/scripts/pack_texts.py $(CHK)/reply_packed.h
 	@cmp -s $(CHK)/reply_packed.h firmware/console/reply_packed.h || \
-	    { echo 'texts: firmware/console/reply_texts.h is not what firmware/console/reply_packed.h was made of: make texts' >&2; exit 1; }
+	    { echo 'texts: firmware/base/replies.h or console/reply_texts.h is not what firmware/console/reply_packed.h was made of: make texts' >&2; exit 1; }
 	@echo 'texts: reply_packed.h is up to date'
 
 # STRICT=yes: a stale page is a failure
@@ -105,7 +105,7 @@ check-planted:
 	@python3 host_tests/tools/checks/test_planted.py
 	@python3 checks/planted.py $(ONLY)
 
-## texts: pack the firmware's texts again after a change of firmware/console/reply_texts.h
+## texts: pack the firmware's texts again after a change of firmware/base/replies.h or console/reply_texts.h
 texts:
 	@python3 mk/scripts/pack_texts.py firmware/console/reply_packed.h
 

@@ -8,34 +8,16 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-typedef enum {
-    NOTICE_BANNER, /* name and version, reset cause, how to get help; ends with the csv header */
-    NOTICE_STOPPED,
-    NOTICE_GOING,
-    NOTICE_SAVED, /* waits until the save is over, then reports its result */
-    NOTICE_LOADED,
-    NOTICE_DEFAULTS,
-    NOTICE_ODR,
-    NOTICE_NOISE, /* measurements; argument: measure_outcome_t */
-    NOTICE_SELFTEST,
-    NOTICE_TARE,
-    NOTICE_CAL,
-    NOTICE_CAL6,
-    NOTICE_VERSION,
-    NOTICE_HELP, /* from here to LISTING: many lines, for a person to read */
-    NOTICE_STATUS,
-    NOTICE_LISTING,  /* all settings with their legal values; the last of the commands' names */
-    NOTICE_SETTING,  /* argument: index in settings_table.h, with NOTICE_CHANGED if it was set */
-    NOTICE_ILLEGAL,  /* argument: index in settings_table.h */
-    NOTICE_TOO_SLOW, /* numbers: settings_cycles */
-    NOTICE_UNKNOWN,  /* no such command */
-    NOTICE_TOO_LONG, /* too long; GARBAGE: with characters that no command has */
-    NOTICE_GARBAGE,
-    NOTICE_BUSY,        /* refused while a measurement runs */
-    NOTICE_FAULT_BEGIN, /* argument: adxl345_fault_t */
-    NOTICE_FAULT_END
-} notice_kind_t;
+#include "base/replies.h"
 
+#define NOTICE_ID(name, ...) NOTICE_##name,
+typedef enum { REPLIES(NOTICE_ID, NOTICE_ID) } notice_kind_t;
+#undef NOTICE_ID
+
+/*
+ * Arguments: of a setting its index in settings_table.h, with NOTICE_CHANGED if it was set; of a measurement
+ * measure_outcome_t; of a fault its code. NOTICE_SAVED waits until the save is over, then its result is reported.
+ */
 enum { NOTICE_CHANGED = 0x80 };
 
 typedef struct {

@@ -1,6 +1,7 @@
 /*
- * Written by mk/scripts/pack_texts.py from reply_texts.h: 89 texts of 2471 bytes in 1331, and 113 pairs. A byte from
- * PACKED_PAIR_FIRST on is the two of its pair, which may be such bytes again, PACKED_DEPTH deep at most.
+ * Written by mk/scripts/pack_texts.py from replies.h and reply_texts.h: 89 texts of 2471 bytes in 1331, and
+ * 113 pairs. A byte from PACKED_PAIR_FIRST on is the two of its pair, which may be such bytes again,
+ * PACKED_DEPTH deep at most.
  */
 #ifndef REPLY_PACKED_H
 #define REPLY_PACKED_H

@@ -7,14 +7,22 @@
 #include "console/reply_packed.h"
 #include "machine.h"
 
-static const char names[] IN_FLASH = REPLY_NAMES;
+/* The banner, which is no command, has the empty name. */
+#define NO_NAME(...)
+#define NAME(kind, typed, ...) "\0" typed
+static const char names[] IN_FLASH = REPLIES(NO_NAME, NAME);
+
+#define NO_COMMAND(...)
+#define ONE_COMMAND(...) +1
+enum { COMMANDS = 0 REPLIES(NO_COMMAND, ONE_COMMAND) };
+_Static_assert(NOTICE_BANNER == 0 && NOTICE_LISTING == (int)COMMANDS, "the commands follow the banner");
 
 _Static_assert((int)PACKED_DEPTH <= (int)REPLY_PAIRS_DEPTH, "room for the pairs in a pair");
 _Static_assert(PACKED_PAIR_FIRST == SAY_PAIR, "the codes of pairs follow those of values");
 
 flash_text_t reply_command_name(uint8_t kind)
 {
-    return text_nth(names, (uint8_t)(kind - NOTICE_STOPPED));
+    return text_nth(names, kind);
 }
 
 const uint8_t *reply_text(uint8_t text)

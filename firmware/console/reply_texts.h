@@ -7,6 +7,7 @@
 
 #include <stdint.h>
 
+#include "base/replies.h"
 #include "console/version.h"
 
 /* The bytes of enum say, to be placed between the words. */
@@ -123,62 +124,14 @@ enum say {
     SAY_PAIR            /* from here on pairs of packed texts */
 };
 
-/* The commands as typed, one for each notice_kind_t from NOTICE_STOPPED on, in the same order. */
-#define REPLY_NAMES \
-    "stop\0go\0save\0load\0defaults\0odr\0noise\0selftest\0tare\0cal\0cal6\0version\0help\0status\0settings"
-
 /*
- * One text for each notice_kind_t, in the same order; then the others, related ones in the order of their enum.
+ * The replies (replies.h), then the texts within them, related ones in the order of their enum.
  * mk/scripts/pack_texts.py packs them into program memory (reply_packed.h). Not formatted: the aligned line ends would
  * all change with the longest.
  */
 /* clang-format off */
-#define REPLY_TEXTS(X) \
-    X(BANNER, V_WHO V_LINE \
-      "reset: " V_CAUSE V_LINE \
-      V_SETTINGS V_LINE \
-      "settings: " V_KEPT V_LINE \
-      "type help, or mode plot for the Arduino plotter" V_LINE \
-      V_SENSOR V_LINE \
-      V_HEADER) \
-    X(STOPPED, "stopped") \
-    X(GOING, "going") \
-    X(SAVED, "saved") \
-    X(LOADED, "settings: " V_KEPT V_LINE_IF_CSV V_HEADER) \
-    X(DEFAULTS, "settings: defaults" V_LINE_IF_CSV V_HEADER) \
-    X(ODR, "odr " V_MEASURED " Hz, " V_OFF " % from " V_RATE " Hz") \
-    X(NOISE, "noise " V_AXIS " " V_RMS " LSB rms, R " V_R " LSB^2" V_AGAIN) \
-    X(SELFTEST, "selftest " V_AXIS " " V_SHIFT " LSB, " V_LIMITS V_AGAIN) \
-    X(TARE, V_LISTED V_LINE \
-      V_KEEP) \
-    X(CAL, V_LISTED V_LINE \
-      V_KEEP) \
-    X(CAL6, "cal6: residual " V_RESIDUAL " mg" V_LINE \
-      V_LISTED V_AGAIN V_LINE \
-      V_KEEP) \
-    X(VERSION, V_WHO) \
-    X(HELP, V_SETTING_NAME ": " V_LEGAL V_AGAIN V_LINE \
-      V_VERBS "; NAME VALUE sets") \
-    X(STATUS, "state " V_STATE ", fault " V_SUBJECT ", rate " V_RATE " Hz, measured " V_MEASURED " Hz, uptime s " \
-      V_COUNT V_CHOICES V_LINE \
-      "samples " V_COUNT ", gated " V_COUNT ", reacquired " V_COUNT ", clipped " V_COUNT V_LINE \
-      "rows " V_COUNT ", dropped " V_COUNT ", held " V_COUNT ", serial bytes lost " V_SERIAL_LOST \
-      ", lines refused " V_COUNT V_LINE \
-      "lost " V_COUNT ", late " V_COUNT ", drained " V_COUNT ", stuck " V_COUNT ", restarts " V_COUNT V_LINE \
-      "not acknowledged " V_COUNT ", arbitration lost " V_COUNT ", bus errors " V_COUNT ", timeouts " V_COUNT V_LINE \
-      "readings torn " V_COUNT ", empty " V_COUNT ", overruns " V_COUNT ", storms " V_COUNT V_LINE \
-      "reset: " V_CAUSE) \
-    X(LISTING, V_LISTED V_AGAIN) \
-    X(SETTING, V_SETTING V_SETTING_NOTE) \
-    X(ILLEGAL, "refused 4: " V_SETTING_NAME " is one of " V_LEGAL) \
-    X(TOO_SLOW, "refused 5: takes " V_CYCLES " of " V_LEFT " cycles a sample") \
-    X(UNKNOWN, "refused 1: unknown command (type help)") \
-    X(TOO_LONG, "refused 2: line too long") \
-    X(GARBAGE, "refused 3: illegal characters") \
-    X(BUSY, "refused 10: busy measuring") \
-    X(FAULT_BEGIN, "fault " V_SUBJECT ": " V_FAULT_WORDS) \
-    X(FAULT_END, "fault " V_SUBJECT " over: after " V_OUTAGE_MS " ms, " V_OUTAGE_LOST \
-      " lost, sensor at 0x" V_OUTAGE_ADDRESS) \
+#define REPLY_TEXTS(X, COMMAND) \
+    REPLIES(X, COMMAND) \
     X(SENSOR, "sensor: ADXL345 at 0x" V_ADDRESS V_BUS) \
     X(ILLEGAL_NUMBER, "refused 4: illegal value; " V_SETTING ": " V_LEGAL) \
     X(ROWS_SETTING, V_SETTING V_SETTING_NOTE V_LINE_IF_FORCED V_EVERY) \
@@ -245,8 +198,8 @@ enum say {
     X(I2C_SLOWED, "I2C at 100 kHz up to 200 Hz" V_CHECK_BUS)
 /* clang-format on */
 
-#define REPLY_TEXT_ID(name, words) TEXT_##name,
-enum reply_text { REPLY_TEXTS(REPLY_TEXT_ID) TEXT_NONE };
+#define REPLY_TEXT_ID(name, ...) TEXT_##name,
+enum reply_text { REPLY_TEXTS(REPLY_TEXT_ID, REPLY_TEXT_ID) TEXT_NONE };
 #undef REPLY_TEXT_ID
 
 /* At most this many second bytes of pairs wait while the first one is a pair again. */

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""pack_texts.py OUT: packs the texts of firmware/console/reply_texts.h for program memory into a header (firmware/console/reply_packed.h).
+"""pack_texts.py OUT: packs the replies (firmware/base/replies.h, firmware/console/reply_texts.h) for program memory: firmware/console/reply_packed.h.
 
 Byte pair encoding: the most frequent pair of neighbours gets a byte of its own, repeatedly, until a pair saves no more than the two bytes
 of its entry in the list of pairs. reply_lines.c unpacks them with a stack of PACKED_DEPTH bytes.
@@ -21,7 +21,8 @@ def texts():
     compiler = next((name for name in ("gcc", "cc", "avr-gcc") if shutil.which(name)), None)
     if compiler is None:
         sys.exit("pack_texts: no C compiler found: install one with sh tools/deps.sh firmware")
-    source = '#include "console/reply_texts.h"\n#define TEXT(name, words) @name words\nREPLY_TEXTS(TEXT)\n'
+    source = ('#include "console/reply_texts.h"\n#define TEXT(name, words) @name words\n#define COMMAND(name, typed, words) @name words\n'
+              'REPLY_TEXTS(TEXT, COMMAND)\n')
     command = [compiler, "-E", "-P", "-mmcu=atmega328p"][:4 if compiler == "avr-gcc" else 3]
     includes = ["-Ifirmware", "-Ilib/machine/src", "-Ihal", "-Ihal/avr" if compiler == "avr-gcc" else "-Ihal/host"]
     done = subprocess.run([*command, *includes, "-x", "c", "-"], input=source, capture_output=True, text=True, check=False)
@@ -106,8 +107,9 @@ def header(named):
     depth = max(depth_of(code, pairs) for code in flat)
     plain = sum(len(row) + 1 for row in rows)
     return f"""/*
- * Written by mk/scripts/pack_texts.py from reply_texts.h: {len(rows)} texts of {plain} bytes in {len(flat)}, and {len(pairs)} pairs. A byte from
- * PACKED_PAIR_FIRST on is the two of its pair, which may be such bytes again, PACKED_DEPTH deep at most.
+ * Written by mk/scripts/pack_texts.py from replies.h and reply_texts.h: {len(rows)} texts of {plain} bytes in {len(flat)}, and
+ * {len(pairs)} pairs. A byte from PACKED_PAIR_FIRST on is the two of its pair, which may be such bytes again,
+ * PACKED_DEPTH deep at most.
  */
 #ifndef REPLY_PACKED_H
 #define REPLY_PACKED_H

@@ -13,8 +13,9 @@ INCLUDES = ["-Ifirmware", "-Ilib/machine/src", "-Ihal", "-Ihal/host"]
 
 
 def texts():
-    """name -> lines of firmware/console/reply_texts.h, a byte of enum say as .. ."""
-    source = '#include "console/reply_texts.h"\n#define SHOWN(name, words) @name words\nREPLY_TEXTS(SHOWN)\n'
+    """name -> lines of the replies and of firmware/console/reply_texts.h, a byte of enum say as .. ."""
+    source = ('#include "console/reply_texts.h"\n#define SHOWN(name, words) @name words\n#define COMMAND(name, typed, words) @name words\n'
+              'REPLY_TEXTS(SHOWN, COMMAND)\n')
     done = subprocess.run(["gcc", "-E", "-P", *INCLUDES, "-xc", "-"], input=source, capture_output=True, text=True, check=True)
     raw = {}
     for entry in done.stdout.split("@")[1:]:
