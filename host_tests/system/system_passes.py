@@ -1,9 +1,10 @@
 """No pass of the main loop is longer than 4 ms, and no interrupt with a deadline waits longer than 15.5 us; part of system_tests.py."""
 import pathlib
+import re
 
 from laws import DEFAULT, LIGHT, ROBUST  # noqa: E402
 import latency  # noqa: E402
-from system_support import SET_IMAGES, STREAMS, TESTS, image_with, simrun, test, within  # noqa: E402
+from system_support import SET_IMAGES, STREAMS, TESTS, image_with, simrun, start_offset_us, test, triplets, within  # noqa: E402
 
 PASS_CYCLES = 64000
 COMMANDS = ("status", "help", "filter {0}", "range 8", "filter", "filter {1}", "range 16", "every 3", "every 1", "stop", "go", "mode plot",
@@ -79,6 +80,27 @@ for set_image in SET_IMAGES:
     for pace in PACES:
         TESTS.append(make_disturbed_test(set_image, *pace))
         TESTS.append(make_settings_test(set_image, *pace[:2]))
+
+
+@test
+def flood_at_1000000_baud_while_help_holds_the_rows_costs_no_sample():
+    """100 bytes a millisecond, from the first lines of help on: what does not fit is counted, its lines are refused, rows held are counted."""
+    for rate in (100, 400):
+        rows, notes, served, stats = simrun(f"passes-flood-{rate}", STREAMS / "rest-2lsb.csv", "--rate", rate, "--baud", 1000000,
+                                            "--cmd", "1000:help", "--fault", "1003ms:rxflood:1500", "--cmd", "2800:x", "--cmd", "2900:status",
+                                            "--max-ms", 3300)
+        assert stats["isr_usart_rx_n"] >= 99 * 1500, stats["isr_usart_rx_n"]
+        assert_prompt(f"flood at {rate} Hz", stats, 1000000, True)
+        first = next(i for i, row in enumerate(rows) if row[0] > 1000000)
+        assert rows[first][9] & 256 and not any(row[9] & 256 for row in rows[first + 1:]), rows[first:first + 5]
+        shown = [row[1:4] for row in rows[first:] if row[0] <= 2800000]
+        latched = min(range(len(served)), key=lambda i: abs(int(served[i]["t_us"]) - start_offset_us(served, rows) - rows[first][0]))
+        assert shown == triplets(served)[latched:latched + len(shown)] and len(shown) >= 1.75 * rate, (len(shown), "every sample has its row")
+        told = " ".join(notes[notes.index(next(note for note in notes if note.startswith("# state "))):])
+        samples, sent, held, bytes_lost, refused, lost = (int(n) for n in re.search(
+            r"samples (\d+),.* rows (\d+), dropped 0, held (\d+), serial bytes lost (\d+), lines refused (\d+) # lost (\d+),", told).groups())
+        assert abs(sent + held - samples) <= 1 and held > 0 and bytes_lost > 0 and lost == 0, (told, "a row may come between two lines")
+        assert 0 <= refused - sum(note.startswith("# refused ") for note in notes) <= 1, (refused, "the last line may be refused for its rest")
 
 
 @test

@@ -101,12 +101,14 @@ def board_with_two_saves():
     return image.read_bytes()
 
 
-def cut(kept, fault, seed=1):
-    """A save of the third set, cut so: (number of the set that the next start has in force, what its banner says of it)."""
+def cut(kept, fault, seed=1, first="stop"):
+    """A save of the third set, cut so; rows go out meanwhile unless `first` is stop.
+
+    Returns (number of the set that the next start has in force, what its banner says of it)."""
     image = OUT / "settings-cut.bin"
     image.write_bytes(kept)
     fw = image_with(DEFAULT)
-    notes, _, _, _ = started("settings-cut", image, *typed(("stop", *SETS[2], "save"), 300, 40), *typed(("settings",), 1050), "--fault", fault,
+    notes, _, _, _ = started("settings-cut", image, *typed((first, *SETS[2], "save"), 300, 40), *typed(("settings",), 1050), "--fault", fault,
                              "--seed", seed, fw=fw, max_ms=1250, resets=1)
     found = set_in_force(notes)
     assert found in (1, 2), f"{fault}: neither the set before nor the new one: {listed(notes)}"
@@ -140,6 +142,19 @@ def settings_survive_a_power_cut_in_every_write_of_a_save():
     assert cut(kept, f"eeprom:{writes}.after:mcupower") == (2, "as saved")
     assert cut(kept, "eeprom:1.before:mcupower") == (1, "as saved")
     print(f"    {writes} writes, {cuts} cuts: {new} times the new set, {before} times told that a copy is damaged")
+
+
+@test
+def settings_survive_a_power_cut_in_a_save_while_rows_go_out():
+    """The board does not stop for a save: its first, middle and last writes are cut while it samples."""
+    kept = board_with_two_saves()
+    image = OUT / "settings-cut.bin"
+    image.write_bytes(kept)
+    writes = saved(image, SETS[2], image_with(DEFAULT))["eeprom_writes"]
+    for i, n in enumerate((1, 2, writes // 3, writes // 2, writes - 1, writes)):
+        for kind in (f"{n}:mcupower:{LEFT[i % 4]}", f"{n}.before:mcupower"):
+            assert cut(kept, f"eeprom:{kind}", n, first="mode csv") in ((1, "as saved"), (1, "as saved, other copy damaged")), kind
+    assert cut(kept, f"eeprom:{writes}.after:mcupower", first="mode csv") == (2, "as saved")
 
 
 @test
