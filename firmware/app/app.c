@@ -86,7 +86,6 @@ static void start_settings(void)
     }
     if (health_is_safe()) {
         settings()->rate_dhz = SETTINGS_RATE_MIN_DHZ;
-        settings_follow();
     }
 }
 

@@ -31,27 +31,9 @@ static void start_sensor(void)
     adxl345_start(&config);
 }
 
-static void set_i2c(void)
-{
-    adxl345_set_i2c((adxl345_i2c_t)settings()->i2c);
-}
-
 static void change_pipeline(void)
 {
     pipeline_change(&settings()->choice, settings()->rate_dhz, settings()->range_g);
-}
-
-void control_start(uint32_t now_us)
-{
-    control.changes = 0;
-    control.line_waits = false;
-    control.sampling = true;
-    pipeline_calibrate(&settings()->calibration);
-    coast_wait(now_us);
-    pipeline_forget();
-    change_pipeline();
-    set_i2c();
-    start_sensor();
 }
 
 /* Deriving what depends on the settings costs two divisions. */
@@ -66,7 +48,7 @@ static void follow(uint8_t starts)
     }
     if (starts & STARTS_SENSOR) {
         measure_abort();
-        set_i2c();
+        adxl345_set_i2c((adxl345_i2c_t)settings()->i2c);
         if (control.sampling) {
             control.changes |= CHANGE_CONFIG;
             start_sensor();
@@ -169,4 +151,16 @@ bool control_follow(uint32_t now_us)
         change_pipeline();
     }
     return now != 0;
+}
+
+/* No sample of another configuration is on its way, so all changes are followed at once. */
+void control_start(uint32_t now_us)
+{
+    control.line_waits = false;
+    control.sampling = true;
+    follow(STARTS_SENSOR | STARTS_CALIBRATION);
+    control.changes = 0;
+    coast_wait(now_us);
+    pipeline_forget();
+    change_pipeline();
 }

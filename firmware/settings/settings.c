@@ -34,7 +34,6 @@ void settings_defaults_beside_calibration(void)
     settings()->mode = MODE_CSV;
     settings()->address = 0;
     settings()->i2c = 0;
-    settings_follow();
 }
 
 uint8_t settings_filter_mark(uint8_t filter)
@@ -95,7 +94,7 @@ uint16_t settings_smallest_every(uint32_t baud, uint16_t rate_dhz)
 }
 
 /* A loaded rate may be too fast for this image's filter: it is replaced by the default, which suits every filter. */
-void settings_follow(void)
+MACHINE_APART void settings_follow(void)
 {
     uint16_t takes = settings_filter_cycles(settings()->choice.filter);
     uint32_t left;

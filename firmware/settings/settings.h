@@ -91,7 +91,7 @@ typedef struct {
 } settings_cycles_t;
 const settings_cycles_t *settings_cycles(void);
 
-/* Call after baud, rate or filter has changed. */
+/* Call after baud, rate or filter has changed: by defaults, by what was saved, or by a command. */
 void settings_follow(void);
 
 /* The smallest `every` at which this baud rate can carry rows of SETTINGS_ROW_MAX bytes at this output data rate. */

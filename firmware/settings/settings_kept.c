@@ -46,7 +46,6 @@ static bool find_filter(void)
     if (kind == FILTER_KIND_COUNT) {
         settings_take_filter(0);
     }
-    settings_follow();
     return kind != FILTER_KIND_COUNT;
 }
 
