@@ -130,10 +130,8 @@ static MACHINE_APART uint16_t newest_bit(void)
 void sensor_watch_start(uint32_t now_us)
 {
     forget();
-    if (!MACHINE_RAM_CLEARED) {
-        watch.part.told = false;
-        watch.slowed.told = false;
-    }
+    watch.part.told = false;
+    watch.slowed.told = false;
     note(&watch, (uint8_t)adxl345_fault(), now_us);
     watch.reported_mask = newest_bit();
 }

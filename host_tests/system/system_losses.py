@@ -75,6 +75,15 @@ def a_rate_above_the_streams_raises_no_fault():
         assert len(rows) > 28 * rate / 4, f"at {rate} Hz: {len(rows)} rows"
 
 
+@test
+def a_slower_rate_costs_less_load():
+    """Below 50 Hz a sample lies further ahead than the alarm reaches: main must sleep all the same, not look again and again."""
+    loads = [simrun(f"slow-{rate}", STREAMS / "outliers-15pct.csv", "--rate", rate, "--loop", "--max-ms", 8000)[3]["cpu_load"]
+             for rate in ("12.5", "25", "50", "100")]
+    print(f"    load at 12.5, 25, 50 and 100 Hz, %: {', '.join(f'{100 * load:.2f}' for load in loads)}")
+    assert all(slower < faster for slower, faster in zip(loads, loads[1:])), loads
+
+
 def make_loss_test(filter_name, rate, baud, every, load_limit, ppm):
     def check():
         lose_nothing(f"loss-{filter_name}-{rate}-{ppm}", STREAMS / "tilt-slow.csv", ppm, rate, baud, every, load_limit, filter_name=filter_name)

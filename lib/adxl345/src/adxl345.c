@@ -31,8 +31,8 @@ static MACHINE_APART void rest_sensor(void)
 
 void adxl345_init(void)
 {
-    adxl345_burst_init();
     if (!MACHINE_RAM_CLEARED) {
+        adxl345_burst_init();
         adxl345_counters_clear();
         adxl345_integrity_forget();
         adxl345_watch_start();

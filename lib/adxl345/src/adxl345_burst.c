@@ -97,9 +97,6 @@ static bool claim(struct burst *b)
 
 void adxl345_burst_init(void)
 {
-    if (MACHINE_RAM_CLEARED) {
-        return;
-    }
     struct burst *b = base();
     hal_irq_state_t state = hal_irq_save();
     b->head = 0;
