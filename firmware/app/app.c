@@ -65,7 +65,7 @@ static void forget(void)
     notices_start();
     reply_start();
     commands_start();
-    rows_start();
+    rows_enable(false);
     measure_reset();
     pipeline_reset();
     loop.greeted = false;
@@ -110,7 +110,7 @@ void app_start(void)
     l->next_service_us = (uint16_t)now_us;
     l->next_second_us = now_us + 1000000ul;
     (void)notices_add(NOTICE_BANNER, 0);
-    control_start(now_us);
+    control_start();
 }
 
 static void count_seconds(uint32_t now_us)
@@ -136,11 +136,7 @@ static bool sample_due(void)
 static void write_row(void)
 {
     loop.row_due = false;
-    if (silence_long()) {
-        rows_at_once(settings()->mode == MODE_PLOT);
-    } else {
-        rows_sample(settings_every_in_force(), settings()->mode == MODE_PLOT);
-    }
+    rows_sample(silence_long() ? 1 : settings_every_in_force(), settings()->mode == MODE_PLOT);
     health_sample_filtered();
 }
 

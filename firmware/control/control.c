@@ -154,13 +154,12 @@ bool control_follow(uint32_t now_us)
 }
 
 /* No sample of another configuration is on its way, so all changes are followed at once. */
-void control_start(uint32_t now_us)
+void control_start(void)
 {
     control.line_waits = false;
     control.sampling = true;
     follow(STARTS_SENSOR | STARTS_CALIBRATION);
     control.changes = 0;
-    coast_wait(now_us);
     pipeline_forget();
     change_pipeline();
 }

@@ -11,7 +11,7 @@
 #include "settings/settings_table.h"
 
 /* Once at start-up, after the settings are loaded: sampling starts. */
-void control_start(uint32_t now_us);
+void control_start(void);
 
 /*
  * Takes what was typed for a setting (settings_table.h) and starts what follows from it. Rate, range and filter take

@@ -17,11 +17,6 @@ static bool enabled;
 static bool held;
 static uint16_t held_from; /* as newest_time */
 
-void rows_start(void)
-{
-    rows_enable(false);
-}
-
 void rows_enable(bool now_enabled)
 {
     enabled = now_enabled;
@@ -95,15 +90,7 @@ static void write(const row_t *row, bool plot)
     pipeline_row_done();
 }
 
-void rows_sample(uint16_t every, bool plot)
-{
-    since_row++;
-    if (since_row >= every) {
-        rows_at_once(plot);
-    }
-}
-
-void rows_at_once(bool plot)
+static MACHINE_APART void rows_at_once(bool plot)
 {
     if (!enabled) {
         return;
@@ -120,4 +107,12 @@ void rows_at_once(bool plot)
     row_t row;
     pipeline_row(&row);
     write(&row, plot);
+}
+
+void rows_sample(uint16_t every, bool plot)
+{
+    since_row++;
+    if (since_row >= every) {
+        rows_at_once(plot);
+    }
 }

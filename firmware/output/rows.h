@@ -5,10 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* No rows yet. */
-void rows_start(void);
-
-/* Rows may go out; false until the banner and the header are out. */
+/* Whether rows go out from now on: not until the banner and the header are out. */
 void rows_enable(bool enabled);
 
 /*
@@ -25,8 +22,5 @@ void rows_hold(void);
 
 /* A line was typed: ends the hold, or restarts it if the line asks for more to read. */
 void rows_typed(bool more_to_read);
-
-/* Writes the row, whatever `every` is. */
-void rows_at_once(bool plot);
 
 #endif

@@ -104,7 +104,6 @@ static void begin_rows(uint8_t mode, uint16_t index)
     pipeline_forget();
     pipeline_change(&settings()->choice, settings()->rate_dhz, settings()->range_g);
     pipeline_finish();
-    rows_start();
     rows_enable(true);
 }
 

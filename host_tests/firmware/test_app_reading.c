@@ -50,7 +50,7 @@ TEST(test_rows_are_held_to_the_nearest_step)
         pipeline_coast(from_us + steps * STEP_US);
         pipeline_finish();
         uint32_t held = counted(COUNT_HELD);
-        rows_at_once(false);
+        rows_sample(1, false);
         TEST_ASSERT_EQUAL_UINT32(steps < STEPS ? held + 1u : held, counted(COUNT_HELD));
     }
 }
