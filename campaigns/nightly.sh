@@ -54,7 +54,6 @@ step default
 step comparison
 step robust
 step synthesised
-step structure
 counted recordings
 step navcheck
 counted faults

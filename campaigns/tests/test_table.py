@@ -58,7 +58,7 @@ SCRIPTS = [
     packages("test_design"), packages("test_design_command"), packages("test_design_refusals"), packages("test_design_typed", "system_images"),
     packages("test_synthesised"),
     packages("test_filter_pages"), packages("test_variable_structure"), packages("test_variable_structure_flight"),
-    packages("test_variable_structure_page"), packages("test_demo", "system_images", "demo_built"), packages("test_demo_page", "demo_built"),
+    packages("test_demo", "system_images", "demo_built"), packages("test_demo_page", "demo_built"),
 ]
 NOT_HERE = {"test_planted", "test_platformio"}  # make check and make piocheck run these
 

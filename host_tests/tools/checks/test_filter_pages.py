@@ -43,13 +43,13 @@ def one_line(text):
 
 
 def number_at(place):
-    """The number of a cell (without what is in brackets), of its N-th part, or what an expression finds in the page."""
+    """The number of a cell (without its range in brackets), of its N-th part, or what an expression finds in the page."""
     page, _, key = place.partition(": ")
     text = (results.FOLDER / f"{page}.md").read_text(encoding="utf-8")
     if key.startswith("~"):
         return re.search(key[1:], one_line(text))[1]
     key, _, part = key.partition(" #")
-    cell = results.numbers_of(text)[key].split(" (")[0]
+    cell = re.split(r" [(\[]", results.numbers_of(text)[key])[0]
     return re.split(r" / | ", cell)[int(part)] if part else cell
 
 
