@@ -1,4 +1,4 @@
-"""make comparison in small: what it measures is what theory says of the simplest filters; all filters are in its tables; its page is whole."""
+"""make comparison in small: what it measures is what theory says of the simplest filters."""
 import math
 import pathlib
 import sys
@@ -9,15 +9,10 @@ from system_support import needs, run_all, test
 needs("papers", "numpy", "matplotlib")
 
 import numpy as np  # noqa: E402
-import comparison  # noqa: E402
 import comparison_runs as made  # noqa: E402
 from comparison_filters import NAMES, filtered, roll_of  # noqa: E402
-from default_score import CANDIDATE, CLASSES  # noqa: E402
 from laws import PLAIN  # noqa: E402
 from resilience.filters import MERGED  # noqa: E402
-import results  # noqa: E402
-
-PICTURES = {"outliers", "moves", "classes"}
 
 
 @test
@@ -67,21 +62,6 @@ def gates_are_worth_what_paper_002_says():
     found = made.k_ef(300)
     assert found["15 % outliers"][PLAIN] == 1.0 and 30.0 < found["15 % outliers"][MERGED] < 46.0, found["15 % outliers"]
     assert found["no outliers"]["huber"] < 1.0 < found["15 % outliers"]["huber"], found
-
-
-@test
-def the_page_has_every_filter_and_every_class():
-    page = comparison.PAGE.held()
-    numbers = results.numbers_of(page)
-    for name in NAMES:
-        for group in CLASSES:
-            assert f"Classes of motion and faults, {comparison.words(name)}, {group}" in numbers, (name, group)
-        for title, column in (("Tilt among outliers and bursts", made.TILTS[2]), ("Paper 002's scenario", made.SCENARIOS[0]),
-                              ("Lag", "gain"), ("Cost on the chip", "flash, B")):
-            assert f"{title}, {comparison.words(name)}, {column}" in numbers, (name, title)
-    assert all(f"Where `{CANDIDATE}` wins and loses, {group}, ratio" in numbers for group in CLASSES)
-    for name in PICTURES:
-        assert f"(pictures/comparison-{name}.png)" in page and (results.PICTURES / f"comparison-{name}.png").is_file(), name
 
 
 if __name__ == "__main__":

@@ -1,5 +1,4 @@
-"""make default: the rule of the default filter, its scores, its program, and that docs/results/default-filter.md is what the rule and the rows
-give."""
+"""make default: the rule of the default filter, its scores, its program."""
 import json
 import math
 import pathlib
@@ -15,7 +14,7 @@ import default_streams as streams
 import make_streams
 import results
 
-from system_support import Skip, run_all, test
+from system_support import run_all, test
 
 OUT = pathlib.Path("build/default-test")
 SECOND, THIRD = "second", "third"
@@ -237,54 +236,6 @@ def a_job_that_cannot_be_done_is_named():
                        (f"k {path} 1000 16 1 50 60 truth 0 0", "fewer than two rows in this part")):
         done = program(job, expect=2)
         assert words in done.stderr and len(done.stderr.splitlines()) == 1 and done.stdout == "", (job, done.stderr)
-
-
-# --- the page ---------------------------------------------------------------------------------------------------------
-
-
-def page_text():
-    return default_filter.PAGE.held()
-
-
-@test
-def the_page_has_every_filter_in_every_class():
-    numbers = results.numbers_of(page_text())
-    names = {line.split(",")[4] for line in program(f"k {still_stream(10)} 1000 16 1 0 60 truth 0 0").stdout.splitlines()}
-    missing = [(group, name) for group in score.CLASSES for name in names if f"RMSE by class, `{name}`, {group}" not in numbers]
-    assert missing == [], f"{missing}: make default writes the page"
-
-
-def kept_rows():
-    """The rows of the last make default with recordings."""
-    rows = json.loads(default_filter.JSON.read_text(encoding="ascii")) if default_filter.JSON.is_file() else []
-    if not rows or not rows[0]["recordings"]:
-        raise Skip(f"{default_filter.JSON} is not there, or of a run without the recordings: make default")
-    return rows
-
-
-@test
-def the_page_is_that_of_the_rows():
-    numbers = results.numbers_of(page_text())
-    for kept in kept_rows():
-        if kept["level"] == "class":
-            key = f"RMSE by class, `{kept['filter']}`, {kept['class']}"
-            number = numbers.get(key, "").split(" (")[0]
-            assert number == default_filter.lsb(kept["rmse_lsb"]), f"{key}: {number} on the page, {kept['rmse_lsb']} in the rows"
-
-
-@test
-def the_verdict_follows_from_the_streams():
-    rows = kept_rows()
-    scores = {}
-    for group in score.CLASSES:
-        for name in {r["filter"] for r in rows if r["level"] == "stream"}:
-            rates = {}
-            for r in rows:
-                if r["level"] == "stream" and r["class"] == group and r["filter"] == name:
-                    rates.setdefault(r["rate_hz"], []).append(math.log(r["rmse_lsb_5Hz"]))
-            scores.setdefault(group, {})[name] = math.exp(sum(sum(v) / len(v) for v in rates.values()) / len(rates))
-    assert score.verdict(scores).default == rows[0]["default"]
-    assert f"The rule chooses **`{rows[0]['default']}`**" in " ".join(page_text().split())
 
 
 @test

@@ -1,22 +1,15 @@
-"""docs/results/robust-filters.md is what a new run gives; a number, a row or a picture that is not is found; scores and experiment are as
-described."""
-import copy
+"""make robust: scores counted by hand, the vibration of its table, and the program that filters a stream."""
 import pathlib
 import random
 import sys
-from unittest import mock
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-from laws import PLAIN, ROBUST, names as laws_names  # noqa: E402
+from laws import PLAIN, ROBUST  # noqa: E402
 try:
     import numpy as np
     import make_streams
-    import pictures
-    import robust
-    import robust_pictures
     import robust_runs
     import results
-    from results import numbers_of
 except ImportError as missing:
     sys.exit(f"test_robust: {missing.name} is missing: run it by `make test`")
 
@@ -24,43 +17,6 @@ from system_support import refused, run, run_all, test
 
 OUT = pathlib.Path("build/robust")
 REPLAY, STREAM = robust_runs.REPLAY, "sim/streams/steps.csv"
-FRESH = {}
-
-
-def fresh():
-    """One run for all tests: (lines of the page, pictures, the committed page)."""
-    if not FRESH:
-        tables, streams, runs = robust.measure()
-        shown = robust_pictures.contents(streams, runs)
-        FRESH["all"] = pictures.on_page(shown) + tables, shown, robust.PAGE.held()
-    return FRESH["all"]
-
-
-# --- page and pictures ------------------------------------------------------------------------------------------------
-
-
-@test
-def the_page_is_what_a_new_run_gives():
-    lines, _, text = fresh()
-    assert robust.PAGE.check(lines) == [], robust.PAGE.check(lines)
-    assert list(laws_names()) == robust_runs.filters() and len(list(laws_names())) >= 5
-    # the twin: another number on the page
-    right = f"| outliers-15pct | {numbers_of(text)['Roll, outliers-15pct, raw']} |"
-    found = robust.PAGE.check(lines, text.replace(right, "| outliers-15pct | 7.530 |"))
-    assert len(found) == 1 and "Roll, outliers-15pct, raw: 7.530 on the page" in found[0], found
-
-
-@test
-def the_pictures_show_this_run():
-    shown = fresh()[1]
-    assert len(shown) == 6 and pictures.faults_of(shown, "make robust") == [], pictures.faults_of(shown, "make robust")
-    # the twins: another number, a file that no run draws, another pictures.py
-    other = copy.deepcopy(shown[0])
-    other.data[1][ROBUST].angles_cdeg[2100, 0] += 1
-    found = pictures.faults_of([other, *shown[1:-1]], "make robust")
-    assert len(found) == 2 and str(other.path) in found[0] and f"{shown[-1].path}: not drawn by make robust" == found[1], found
-    with mock.patch.object(pictures, "__file__", __file__):
-        assert all(picture.stale() for picture in shown)
 
 
 # --- scores -----------------------------------------------------------------------------------------------------------
@@ -87,9 +43,10 @@ def scores_are_those_of_a_run_counted_by_hand():
 
 @test
 def the_raw_readings_keep_the_noise_of_their_stream():
-    """4 LSB on each axis at 1 g: one axis moves pitch by 4 / 265 radians, rounding to whole LSB adds 1/12; 4 sigma of 5995 rows are 3.7 %."""
+    """4 LSB on each axis at 1 g: one axis moves pitch by 4 / 265 radians, rounding to whole LSB adds 1/12; 4 sigma of 6000 rows are 3.7 %."""
     expected = np.degrees(np.sqrt(16.0 + 1.0 / 12.0) / 265.0)
-    measured = float(numbers_of(fresh()[2])["Pitch, rest-4lsb, raw"])
+    stream = next(stream for stream in robust_runs.shipped() if stream.name == "rest-4lsb")
+    measured = robust_runs.scores(stream, robust_runs.unfiltered(stream, np.zeros(len(stream.lsb), int)))["pitch"]
     assert abs(measured / expected - 1.0) < 0.037, (measured, expected)
 
 
