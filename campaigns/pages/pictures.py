@@ -91,11 +91,3 @@ class Picture:
 def on_page(pictures):
     """The lines of a page that show them."""
     return [line for picture in pictures for line in (f"![{picture.title}]({PICTURES.name}/{picture.path.name})", "")]
-
-
-def faults_of(pictures, command):
-    """One sentence for each picture that does not show this run, and for each file of this page's pictures that is none of them."""
-    prefix = pictures[0].path.name.partition("-")[0]
-    strangers = sorted(set(PICTURES.glob(f"{prefix}-*")) - {picture.path for picture in pictures})
-    return [*(f"{picture.path}: does not show what this run gives: {command} draws it" for picture in pictures if picture.stale()),
-            *(f"{path}: not drawn by {command}" for path in strangers)]

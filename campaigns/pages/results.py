@@ -1,6 +1,5 @@
 """Pages of results, docs/results/*.md: written whole by the command that measures them, with the hash of its sources under the title. Numbers
 that differ from the committed page are listed."""
-import hashlib
 import pathlib
 import subprocess
 import sys
@@ -12,7 +11,6 @@ from page_sources import Fault
 FOLDER = pathlib.Path("docs/results")
 PICTURES = FOLDER / "pictures"
 COLUMNS = 150
-KEPT = pathlib.Path("build/pages")  # where there is no git: pages as they were before a command wrote them
 
 
 def run_as_program(name, main):
@@ -89,10 +87,6 @@ def no_title_twice(document, lines):
             raise Fault(f"{document}: the title '{title}' occurs {titles.count(title)} times")
 
 
-def digest(text):
-    return hashlib.sha256(text.encode("utf-8")).hexdigest()
-
-
 class Results:
     """A page of docs/results: its title, the command that writes it, and what is measured."""
 
@@ -117,16 +111,9 @@ class Results:
         return [f"{self.document}: {fault}" for fault in faults]
 
     def before(self):
-        """The committed page; without git, or where it is not committed, the one that lay there before this command wrote it."""
+        """The committed page; where there is none, the one that lies there."""
         committed = page_sources.git("show", f"HEAD:./{self.document}").decode()
-        text = self.held() if self.document.is_file() else ""
-        kept, written = self.kept()
-        if kept.is_file() and written.is_file() and written.read_text(encoding="ascii") == digest(text):
-            text = kept.read_text(encoding="utf-8")
-        return committed or text
-
-    def kept(self):
-        return KEPT / self.document.name, KEPT / f"{self.document.name}.written"
+        return committed or (self.held() if self.document.is_file() else "")
 
     def write(self, lines, sources=None):
         """Writes the page with the hash of its sources, that of now or of when a long measurement began; what the page before had otherwise."""
@@ -134,10 +121,6 @@ class Results:
         if sources is None and str(self.document) in page_sources.table():
             sources = page_sources.hash_now(self.document)
         new = page_sources.with_hash(new, sources or page_sources.NONE)
-        KEPT.mkdir(parents=True, exist_ok=True)
-        kept, written = self.kept()
-        kept.write_text(before, encoding="utf-8")
-        written.write_text(digest(new), encoding="ascii")
         self.document.parent.mkdir(parents=True, exist_ok=True)
         beside = self.document.with_name(f"{self.document.name}.new")
         beside.write_text(new, encoding="utf-8")

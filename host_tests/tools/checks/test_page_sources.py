@@ -13,7 +13,7 @@ import misspelt  # noqa: E402
 import page_sources  # noqa: E402
 import results
 
-from system_support import run_all, test
+from system_support import refused, run_all, test
 
 CHECKS = pathlib.Path("checks").resolve()
 SOURCE = '#include "b.h"\n/* a gain */\nint f(int a) { return a * 3; } // "3"\n'
@@ -136,26 +136,19 @@ def the_command_that_measures_writes_the_hash():
 
 
 @test
-def what_does_not_come_out_again_is_named_by_every_run():
+def what_does_not_come_out_again_is_named_and_a_title_that_stands_twice_is_refused():
     with Tree():
         page, said_of = results.Results(pathlib.Path("docs/results/p.md"), "Pages", "make p", "What."), io.StringIO()
 
         def lines(number):
             return results.table("Roll", "In degrees.", ["stream", "raw"], [["steps", number]])
 
-        assert page.write(lines("1")) == [] and page.check(lines("1")) == []  # the page before had no number
-        shipped = page.held() + "\n"
-        put("docs/results/p.md", shipped)  # a page of its own, as if it had been shipped
         with contextlib.redirect_stdout(said_of), contextlib.redirect_stderr(said_of):
-            assert (page.publish(lines("1")), page.publish(lines("1"), good=False)) == (0, 1)
-            assert page.publish(lines("2")) == 1
+            assert [page.publish(lines("1")), page.publish(lines("1"), good=False), page.publish(lines("2"))] == [0, 1, 1]
         assert "p: Roll, steps, raw: 1 on the page, 2 in this run\n" in said_of.getvalue(), said_of.getvalue()
-        assert page.write(lines("2")) == ["Roll, steps, raw: 1 on the page, 2 in this run"]
-        assert page.check(lines("3")) == ["docs/results/p.md: Roll, steps, raw: 2 on the page, 3 in this run"]
-        assert page.check(results.table("Roll", "", ["stream", "raw"], [["ramp", "2"]])) == [
-            "docs/results/p.md: Roll, steps, raw: 2 on the page, not there in this run"]
-        assert page.check([*lines("2"), "More."]) == ["docs/results/p.md: its text or its tables differ from those of this run"]
-        assert results.numbers_of(page.held()) == {"Roll, steps, raw": "2"}
+        assert page.check(lines("2")) == [] != page.check([*lines("2"), "More."])
+        assert page.write([]) == ["Roll, steps, raw: 2 on the page, not there in this run"]
+        refused(results.Fault, lambda: page.text(lines("1") + lines("2")), "docs/results/p.md: the title 'Roll' occurs 2 times")
 
 
 @test
