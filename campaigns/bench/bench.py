@@ -10,8 +10,6 @@ import sys
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
 import bench_parts
 import bench_peers
-import bench_where
-import images
 import laws
 import page_benchmarks
 import page_sources
@@ -80,14 +78,6 @@ def measure(images):
     """The results of each image, two at a time."""
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         return [parse(text, image.stem) for image, text in zip(images, pool.map(printed, images))]
-
-
-def measure_where():
-    """The table of where the dearest filter's cycles go."""
-    profile = OUT / "bench_where.csv"
-    run([SIMRUN, "--fw", images.image_with(bench_where.FILTER), "--in", f"sim/streams/{bench_where.STREAM}.csv",
-         "--out", OUT / "bench_where.txt", "--filter", bench_where.FILTER, "--profile", profile])
-    return bench_where.page_lines(bench_where.parts(*bench_where.read_profile(profile)))
 
 
 # --- sizes ---
@@ -307,7 +297,7 @@ def main():
         return 0
     parts, found = bench_parts.report()
     faults += found
-    page_benchmarks.write(lines, parts, measure_where(), None if absent else bench_peers.table(peers), sources)
+    page_benchmarks.write(lines, parts, None if absent else bench_peers.table(peers), sources)
     for fault in faults:
         print(f"bench: {fault}", file=sys.stderr)
     print(f"bench: {len(rows)} rows, {len(faults)} findings; {DOCUMENT} and {JSON} written")

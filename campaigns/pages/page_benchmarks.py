@@ -4,8 +4,7 @@ from laws import LIGHT
 from results import FOLDER, Results, section
 
 DOCUMENT = FOLDER / "benchmarks.md"
-CALLS, PARTS, WHERE, PEERS = ("Filters, angles and rows", "Cycles of a sample, by part", "Cycles of the most expensive filter",
-                              "Beside other people's filters")
+CALLS, PARTS, PEERS = ("Filters, angles and rows", "Cycles of a sample, by part", "Beside other people's filters")
 
 ABOUT = """\
 Measured in simavr on an ATmega328P at 16 MHz: 16,000 cycles are 1 ms. Flash, RAM and stack are bytes. `make bench` fails when a limit is broken or
@@ -30,23 +29,21 @@ OF_PARTS = """\
 The image that `make flash` writes, on `outliers-15pct` in a loop, mean of 6 s; 115200 baud at 100 Hz, 500000 above. `make cycles` measures this table
 alone; the limits are in `cycles_by_part.txt`. Code that no part names is in `rest`."""
 
-OF_WHERE = "By function, from the simulator's profile of the firmware."
-
 OF_PEERS = """\
 The x axis of `sim/streams/outliers-15pct.csv` (slow tilt at 100 Hz, 4 LSB of noise, 15 % outliers of 20 times that) through each filter, without the
 first hundred samples; the same flags for all. The stream is slow, which favours filters that lag: a position without a rate, a median. None of theirs
 has a gate. Theirs are not in this repository: `make bench PEERS=folder`; without them this table stays as it was."""
 
 
-def lines(calls, parts, where, peers):
+def lines(calls, parts, peers):
     """The page's text and tables, of lines of Markdown each."""
-    sections = ((CALLS, OF_CALLS, calls), (PARTS, OF_PARTS, parts), (WHERE, OF_WHERE, where), (PEERS, OF_PEERS, peers))
+    sections = ((CALLS, OF_CALLS, calls), (PARTS, OF_PARTS, parts), (PEERS, OF_PEERS, peers))
     return [line for title, words, table in sections for line in (f"## {title}", words, "", *table, "")]
 
 
-def write(calls, parts, where, peers, sources):
+def write(calls, parts, peers, sources):
     """Writes the page. peers: None where some of them were absent; then their table and the hash of the page before stay."""
     if peers is None:
         peers = [line for line in section(PAGE.held(), PEERS) if line.startswith("|")]
         sources = page_sources.hash_in(PAGE.document)
-    PAGE.write(lines(calls, parts, where, peers), sources)
+    PAGE.write(lines(calls, parts, peers), sources)

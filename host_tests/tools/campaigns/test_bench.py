@@ -43,7 +43,7 @@ def rows():
 
 def whole_page(calls):
     """The page's text with that table of calls."""
-    return page_benchmarks.PAGE.text(page_benchmarks.lines(calls, ["| parts |"], ["| where |"], ["| peers |"]))
+    return page_benchmarks.PAGE.text(page_benchmarks.lines(calls, ["| parts |"], ["| peers |"]))
 
 
 RMS = [("one", "typical", 250, 0.01), ("one", "provoked", 250, 99.0), ("one", "typical", 125, 9.0), ("angles", "typical", 0, 0.004)]
@@ -80,10 +80,22 @@ def a_run_cut_short_is_noticed():
 
 
 @test
-def a_worst_case_over_its_limit_is_named():
-    one_finding(changed("one", worst=801), "one", "801", "800", "provoked 12.5 Hz")
+def each_limit_is_broken_once_and_named():
+    new, lacking = rows(), rows()
+    new["later"], new["float_later"] = copy.deepcopy(new["one"]), copy.deepcopy(new["float_one"])
+    del lacking["float_one"]
+    for values, *words in ((dict(worst=801), "one", "801", "800", "provoked 12.5 Hz"),
+                           (dict(worst_small=801), "one", "801", "800", "the firmware's flags"), (dict(samples=4999), "4999")):
+        one_finding(changed("one", **values), *words)
     one_finding(changed("angles", worst=1501), "angles", "1501")
-    one_finding(changed("one", worst_small=801), "one", "801", "800", "the firmware's flags")
+    one_finding(changed("float_one", worst=3159), "worst 790", "3159")
+    one_finding(changed("float_one", median=2799), "median 700", "2799")
+    one_finding(lacking, "one", "no float version")
+    one_finding(new, "later", "no limits beside its yardstick", filters=("one", "later"), rms=RMS + [("later", "typical", 250, 0.0)])
+    # a yardstick that does another job
+    one_finding(rows(), "0.26", "25 Hz", rms=[("one", "typical", 250, 0.26), RMS[3]])
+    one_finding(rows(), "angles", "0.03", rms=[RMS[0], ("angles", "anything", 0, 0.03)])
+    one_finding(rows(), "not compared", rms=RMS[1:])
 
 
 @test
@@ -118,43 +130,11 @@ def the_rest_of_a_sample_s_way_is_its_mean_and_what_may_come_on_top():
 
 
 @test
-def a_filter_without_a_limit_is_named():
-    new = rows()
-    new["later"], new["float_later"] = copy.deepcopy(new["one"]), copy.deepcopy(new["float_one"])
-    one_finding(new, "later", "no limits beside its yardstick", filters=("one", "later"), rms=RMS + [("later", "typical", 250, 0.0)])
-
-
-@test
 def every_filter_of_the_list_has_limits():
     for name in laws.names():
         limits = limits_of_the_list(name)
         assert limits and laws.worst_cycles()[name] <= limits.worst and limits.ratio > 1 and limits.rms > 0, (name, limits)
     assert limits_of_the_list("later") is None
-
-
-@test
-def too_little_gain_over_float_is_named():
-    one_finding(changed("float_one", worst=3159), "worst 790", "3159")
-    one_finding(changed("float_one", median=2799), "median 700", "2799")
-
-
-@test
-def a_missing_yardstick_is_named():
-    new = rows()
-    del new["float_one"]
-    one_finding(new, "one", "no float version")
-
-
-@test
-def too_few_samples_are_named():
-    one_finding(changed("one", samples=4999), "4999")
-
-
-@test
-def a_yardstick_that_does_another_job_is_named():
-    one_finding(rows(), "0.26", "25 Hz", rms=[("one", "typical", 250, 0.26), RMS[3]])
-    one_finding(rows(), "angles", "0.03", rms=[RMS[0], ("angles", "anything", 0, 0.03)])
-    one_finding(rows(), "not compared", rms=[RMS[1], RMS[2], RMS[3]])
 
 
 @test
@@ -170,21 +150,6 @@ def a_number_two_per_cent_up_is_named_with_old_and_new():
     del new["one"]
     assert len(bench.regressions(old, new)) == 1
     assert bench.regressions(old, {**old, "float_one": {}}) == []
-
-
-@test
-def cycles_go_to_the_function_that_the_profile_names():
-    profile = OUT / "where.csv"
-    others = [name for name in bench.bench_where.FUNCTIONS if name not in ("mixed", "__umulhisi3", "bend_lsb", "give_back")]
-    lines = ["pc,count,cycles,symbol", "0x10,5,50,mixed+0x0", "0x12,5,25,mixed+0x2", "0x20,9,90,__umulhisi3+0x0",
-             "0x30,5,20,bend_lsb.lto_priv.69+0x0", "0x32,5,30,give_back.lto_priv.7+0x0", "0x40,1,999,main+0x0",
-             *(f"0x50,0,0,{name}+0x0" for name in others)]
-    profile.write_text("\n".join(lines) + "\n", encoding="ascii")
-    found = dict(bench.bench_where.parts(*bench.bench_where.read_profile(profile)))
-    assert sum(found.values()) == (50 + 25 + 90 + 20 + 30) / 5 and found["products"] == 90 / 5 and found["gains, x and P"] == 50 / 5, found
-    for gone in ("mixed", "bend_lsb", "filter_fx_leading"):
-        profile.write_text("\n".join(line for line in lines if f",{gone}" not in line) + "\n", encoding="ascii")
-        assert fault_of(lambda: bench.bench_where.parts(*bench.bench_where.read_profile(profile))).startswith(f"{gone} is not in the profile")
 
 
 def fault_of(function, *arguments):
@@ -212,21 +177,13 @@ def other_people_s_filters_are_skipped_and_counted_where_they_are_absent():
 
 @test
 def their_table_and_the_hash_are_left_alone_unless_all_of_them_were_measured():
-    peers = {"one": {"label": "`one`", "words": "ours", "min": 700, "median": 1234, "worst": 1300, "flash": 5000, "ram": 90, "error": 1.716},
-             "no filter": {"label": "no filter", "words": "read", "error": 0.5}}
     page = OUT / "benchmarks.md"
-    with mock.patch.object(page_benchmarks.PAGE, "document", page), mock.patch.object(page_benchmarks, "DOCUMENT", page):
-        page_benchmarks.write(["| old |"], ["| old |"], ["| old |"], ["| old |"], "0123456789ab")
-        for table, left, sources in ((None, 1, "0123456789ab"), (bench_peers.table(peers), 0, "ba9876543210")):
-            page_benchmarks.write(["| new |"], ["| parts |"], ["| where |"], table, "ba9876543210")
+    with mock.patch.object(page_benchmarks.PAGE, "document", page):
+        page_benchmarks.write(["| old |"], ["| old |"], ["| old |"], "0123456789ab")
+        for table, left, sources in ((None, 1, "0123456789ab"), (["| new |"], 0, "ba9876543210")):
+            page_benchmarks.write(["| new |"], ["| new |"], table, "ba9876543210")
             written = page_benchmarks.PAGE.held()
             assert written.count("| old |") == left and f"<!-- sources: {sources} -->" in written, written
-            assert written.count("| new |") == written.count("| parts |") == written.count("| where |") == 1, written
-    # the best error first; what was not timed has no cycles
-    rows = ["| no filter | read |  |  |  |  |  | 0.50 |", "| `one` | ours | 700 | 1,234 | 1,300 | 5,000 | 90 | 1.72 |"]
-    assert "\n".join(rows) in written, written
-    told = bench_peers.json_rows(peers)[0]
-    assert told["name"] == "peers/one" and told["cycles_max"] == 1300 and told["error_lsb_rms"] == 1.716, told
 
 
 @test
@@ -250,20 +207,6 @@ def what_a_filter_beside_others_prints_is_read():
     settled = [(500, 0.0)] * bench_peers.SETTLED
     row = bench_peers.row_of([*settled, (100, 3.0), (102, 4.0), (300, 5.0)], [9.0] * len(settled) + [0.0, 0.0, 5.0])
     assert row == {"min": 100, "median": 102, "worst": 300, "error": (25 / 3) ** 0.5}, row
-
-
-@test
-def the_committed_page_has_every_filter_beside_theirs():
-    table = "\n".join(page_benchmarks.section(page_benchmarks.PAGE.held(), page_benchmarks.PEERS))
-    for subject in (*bench_peers.ours(), *bench_peers.THEIRS):
-        assert table.count(f"| {subject.label} | {subject.words} |") == 1, f"{subject.name} has no row in {bench.DOCUMENT}: run make bench"
-
-
-@test
-def the_committed_page_has_every_filter():
-    table = bench.read_table(bench.DOCUMENT.read_text(encoding="utf-8"))
-    for name in [*bench.filters_of(["-mmcu=atmega328p", "-Ilib/machine/src", "-Ilib/filters/src"]), "angles", "format_row", "sample_total"]:
-        assert table.get(name, {}).get("worst"), f"{name} has no row in {bench.DOCUMENT}: run make bench"
 
 
 SOFT = "soft"  # in its image the step of the Kalman filters is not in line; the next one there has no gate
