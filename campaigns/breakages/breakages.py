@@ -3,7 +3,6 @@
 
     breakages.py [--sample N] [NAME...]    all of campaigns/breakages/breakages.txt, N of them, or those whose name contains a word; a survivor makes
                                            the exit status 1. Which N goes by the commit, so that in time all have their turn.
-    breakages.py --history                 judges nothing: which commits of the product would have had to touch the list
 
 The judges `proof` and `fuzz` are those of make proof and make fuzz, which read the same list.
 """
@@ -131,8 +130,7 @@ def chosen(sample, words):
 
 
 def options_of(arguments):
-    parser = argparse.ArgumentParser(usage="breakages.py [--history] [--sample N] [NAME...]")
-    parser.add_argument("--history", action="store_true")
+    parser = argparse.ArgumentParser(usage="breakages.py [--sample N] [NAME...]")
     parser.add_argument("--sample", default="")
     parser.add_argument("words", nargs="*")
     options = parser.parse_args(arguments)
@@ -144,10 +142,6 @@ def options_of(arguments):
 
 def main():
     options = options_of(sys.argv[1:])
-    if options.history:
-        import breakages_history
-        breakages_history.show(anchors.load(LIST))
-        return 0
     pairs = chosen(options.sample, options.words)
     prepare()
     limits_s = {}

@@ -1,5 +1,4 @@
 # Mutants of lib, firmware and hal: by operators (campaigns/mutants), and named breakages that no operator makes.
-# python3 campaigns/breakages/breakages.py --history lists the commits that would have had to touch the list of the named ones.
 MUTANTS_ENV = HOST_CC='$(HOST_CC)' HOST_CXX='$(HOST_CXX)' HOST_FLAGS='$(HOST_FLAGS)' HOST_SRC='$(HOST_SRC)' TESTS='$(TESTS)' UNITY_DIR='$(UNITY_DIR)' \
               NAV_VARIANTS='$(NAV_VARIANTS)' NAV_RINGS='$(NAV_RINGS)' $(foreach v,$(NAV_VARIANTS),NAV_OF_$(v)='$(NAV_OF_$(v))')
 

@@ -49,34 +49,13 @@ def counts(status, output, check="symbols"):
 
 
 @test
-def right_finding_counts():
+def what_counts_is_the_right_finding_about_the_right_file_in_one_line():
     assert (FAULT.says, FAULT.silent, FAULT.new) == ({"symbols": ["divides"]}, {"tidy": ["."]}, "int planted;\n")
     assert counts(2, f"something else\n{RIGHT}\n")
-
-
-@test
-def wrong_finding_about_the_file_does_not_count():
-    assert not counts(2, "lib/filters/src/planted.c:1:1: error: unknown type name 'this'\n")
-
-
-@test
-def right_finding_about_another_file_does_not_count():
-    assert not counts(2, RIGHT.replace("planted.c", "other.c"))
-
-
-@test
-def file_and_words_on_different_lines_do_not_count():
-    assert not counts(2, "lib/filters/src/planted.c:1:1: error: unknown type name 'this'\nother.c divides\n")
-
-
-@test
-def finding_of_a_check_that_passes_or_hangs_does_not_count():
-    assert not counts(0, RIGHT) and not counts(None, RIGHT)
-
-
-@test
-def words_of_make_do_not_count():
-    assert not counts(2, f"make: *** [{RIGHT}] Error 1")
+    unknown = "lib/filters/src/planted.c:1:1: error: unknown type name 'this'\n"
+    for status, output in ((2, unknown), (2, RIGHT.replace("planted.c", "other.c")), (2, f"{unknown}other.c divides\n"), (0, RIGHT), (None, RIGHT),
+                           (2, f"make: *** [{RIGHT}] Error 1")):
+        assert not counts(status, output), (status, output)
 
 
 @test
