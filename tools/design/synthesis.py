@@ -11,8 +11,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import minimize
 
-from . import simplex
 from .structure import Filter, alpha_beta, difference, power, power_and_margin, product, schur_cohn, total
 
 ORDER_MAX = 10  # v + k + l: above it, double precision cannot hold the coefficients of a slow filter
@@ -184,8 +184,9 @@ class Search:
         for spread in spreads:
             at = place if found is None else found[1]
             corners = [at] + [[x + ((-spread if i == 0 else spread) if i == j else 0.0) for j, x in enumerate(at)] for i in range(len(at))]
-            new = simplex.least(lambda tried: self.cost(tried, error_max), corners, 1e-10, 1e-15, 250 * len(at))
-            found = new if found is None or new[0] < found[0] else found
+            new = minimize(lambda tried: self.cost(tried.tolist(), error_max), at, method="Nelder-Mead", options={
+                "initial_simplex": corners, "xatol": 1e-10, "fatol": 1e-15, "maxfev": 250 * len(at)})
+            found = (new.fun, new.x.tolist()) if found is None or new.fun < found[0] else found
         return found
 
 
