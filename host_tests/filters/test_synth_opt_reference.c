@@ -1,102 +1,22 @@
-/* synth_opt against its double reference, and the reference against the values and limits of the notes. */
+/* synth_opt against its double reference; the schedules in double against the notes: test_synthesis_reference.c. */
 #include "reference/synth_opt.h"
+#include "reference/synthesis.h"
 #include "support/test_law.h"
 #include "synth.h"
 
 #include <math.h>
+#include <string.h>
 
-#define PI 3.14159265358979323846
 #define STRETCH 0.9413
 enum { SEED = 7101, STEPS = 12 };
 
-static void equal_errors(double s[9], double p0)
+/* The exact schedule from equal errors of variance p0, per R. */
+static reference_exact_t exact_from(double p0)
 {
-    for (int i = 0; i < 9; i++) {
-        s[i] = p0;
-    }
-}
-
-/* notes/synthesised-filter.md 1.1 and 2.1, to the digits printed there: P0 = 5, R = 1 and 0.5; three raw samples. */
-TEST(exact_schedule_begins_as_in_the_notes)
-{
-    static const double p0[3] = { 5.0, 10.0, 0.0 };
-    static const double b0[3][6] = { { 0.83333, 0.83333, 0.78313, 0.72532, 0.69948, 0.68625 },
-                                     { 0.90909, 0.90909, 0.80824, 0.73759, 0.0, 0.0 },
-                                     { 0.833333, 0.75, 0.714286, 0.694545, 0.682971, 0.0 } };
-    for (int i = 0; i < 3; i++) {
-        double s[9] = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 };
-        if (i < 2) {
-            equal_errors(s, p0[i]);
-        }
-        for (int n = 0; n < 6 && b0[i][n] > 0.0; n++) {
-            reference_gains_t g = reference_opt_exact_step(s);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-5, b0[i][n], g.b0);
-            TEST_ASSERT_EQUAL_DOUBLE(0.0, g.a1);
-            TEST_ASSERT_DOUBLE_WITHIN(1e-12, g.b0, g.p); /* P = R b0 */
-        }
-    }
-}
-
-TEST(u_schedule_begins_as_in_the_notes)
-{
-    static const double expected[4][3] = { { -1.0 / 6, 32.5, 0.970149 },
-                                           { -0.032338, 9.680014, 0.906367 },
-                                           { -1.0 / 3, 8.18508, 0.891128 },
-                                           { 0.0, 4.470878, 0.817214 } };
-    static const double of_paper[4] = { 0.981873, 0.928617, 0.897004, 0.81873 }; /* R = 0.6 */
-    double p[5] = { 5.0, 5.0, 5.0, 5.0, 5.0 };
-    double q[5] = { 5.0 / 0.6, 5.0 / 0.6, 5.0 / 0.6, 5.0 / 0.6, 5.0 / 0.6 };
-    for (int n = 0; n < 4; n++) {
-        reference_gains_t g = reference_opt_u_step(p);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-5 * 0.33, expected[n][0], g.a1);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-5 * expected[n][1], expected[n][1], g.pe);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-5 * expected[n][2], expected[n][2], g.b0);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-5, of_paper[n], reference_opt_u_step(q).b0);
-    }
-}
-
-/* From 1000 positive-definite starts over six decades: a1 = 0, b0 = 2/3, P = 2/3 R. */
-TEST(exact_schedule_has_one_limit)
-{
-    test_random_t random;
-    random_seed(&random, SEED);
-    for (int run = 0; run < 1000; run++) {
-        double root[9];
-        double s[9];
-        double scale = pow(10.0, 6.0 * run / 1000.0 - 3.0);
-        for (int i = 0; i < 9; i++) {
-            root[i] = random_normal(&random);
-        }
-        for (int i = 0; i < 9; i++) {
-            s[i] = 0.0;
-            for (int k = 0; k < 3; k++) {
-                s[i] += scale * root[i / 3 * 3 + k] * root[i % 3 * 3 + k];
-            }
-        }
-        reference_gains_t g = { 0 };
-        for (int n = 0; n < 200; n++) {
-            g = reference_opt_exact_step(s);
-        }
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.0, g.a1);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.0 / 3.0, g.b0);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.0 / 3.0, g.p);
-    }
-}
-
-/* U: a1 = -1/6, b0 = P / R = 11/13 from flat starts over ten decades, and from 0, which the clamp of b0 leaves. */
-TEST(u_schedule_has_its_limit)
-{
-    for (int decade = -6; decade <= 4; decade++) {
-        double p0 = decade == -6 ? 0.0 : pow(10.0, decade);
-        double p[5] = { p0, p0, p0, p0, p0 };
-        reference_gains_t g = { 0 };
-        for (int n = 0; n < 400; n++) {
-            g = reference_opt_u_step(p);
-        }
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, -1.0 / 6.0, g.a1);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 11.0 / 13.0, g.b0);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 11.0 / 13.0, g.p);
-    }
+    const double s[9] = { p0, p0, p0, p0, p0, p0, p0, p0, p0 };
+    reference_exact_t f;
+    reference_exact_begin(&f, 1.0, -1.0 / 3.0, 0.0, s);
+    return f;
 }
 
 /* P0 = ratio R, with R = 4 LSB^2. */
@@ -106,22 +26,27 @@ static filter_t made_opt(bool u, double ratio)
     return made(&filter_law_synth_opt, &config);
 }
 
+typedef struct {
+    double a1, b0;
+} gains_t;
+
 /* Gains of the steps of class i: its own first four, then those of 16, then the limit; a1 found by a bend of 3000. */
-static reference_gains_t expected_gains(bool u, double own_ratio, int step)
+static gains_t expected_gains(bool u, double own_ratio, int step)
 {
     double ratio = step < 4 ? own_ratio : 16.0;
-    double s[9];
-    double p[5] = { ratio, ratio, ratio, ratio, ratio };
-    equal_errors(s, ratio);
-    reference_gains_t g = { 0 };
+    const double p[5] = { ratio, ratio, ratio, ratio, ratio };
+    reference_exact_t exact = exact_from(ratio);
+    reference_schedule_t uncorrelated;
+    reference_schedule_begin(&uncorrelated, SCHEDULE_UNCORRELATED, 1.0, p);
     for (int n = 0; n <= (step < STEPS ? step : 400); n++) {
-        g = u ? reference_opt_u_step(p) : reference_opt_exact_step(s);
+        reference_exact_step(&exact);
+        TEST_ASSERT_TRUE(reference_schedule_step(&uncorrelated));
     }
-    return g;
+    return u ? (gains_t){ uncorrelated.a1, uncorrelated.b0 } : (gains_t){ exact.a1, exact.b0 };
 }
 
 /* What the filter does at a step: gain from the probe, a1 from the extrapolation of 3000, 0, 0 (a bend of 3000). */
-static void assert_step(filter_t *f, const reference_gains_t *expected)
+static void assert_step(filter_t *f, const gains_t *expected)
 {
     filter_t bent = *f;
     /* 0, 0 and then 1000 LSB */
@@ -143,11 +68,19 @@ TEST(table_is_the_schedule_of_the_reference)
             filter_t f = made_opt(u != 0, ratio);
             feed(&f, 10, FILTER_WARM_UP_SAMPLES);
             for (int step = 0; step < STEPS + 5; step++) {
-                reference_gains_t expected = expected_gains(u != 0, ratio, step);
+                gains_t expected = expected_gains(u != 0, ratio, step);
                 assert_step(&f, &expected);
             }
         }
     }
+}
+
+TEST(u_schedule_has_its_limit)
+{
+    const gains_t limit = { -1.0 / 6.0, 11.0 / 13.0 };
+    filter_t f = made_opt(true, 16.0);
+    feed(&f, 10, 400);
+    assert_step(&f, &limit);
 }
 
 /*
@@ -165,13 +98,17 @@ TEST(nearest_class_costs_little)
         filter_t f;
         filter_config_t config = { 1000, { 0, (int32_t)lround(256.0 * ratio), 256, RATE_UNLIMITED_LSB_S } };
         TEST_ASSERT_TRUE(ratio > 99999.0 || (filter_init(&f, &filter_law_synth_opt, &config) == FILTER_ACCEPTED));
-        equal_errors(best, ratio);
-        equal_errors(own, ratio);
+        memcpy(best, exact_from(ratio).s, sizeof best);
+        memcpy(own, best, sizeof own);
         feed(&f, 10, FILTER_WARM_UP_SAMPLES);
         for (int step = 0; step < 16; step++) {
             (void)filter_update(&f, 10);
             filter_probe_t probe = probe_of(&f);
-            double optimum = reference_opt_exact_step(best).p;
+            reference_exact_t next;
+            reference_exact_begin(&next, 1.0, -1.0 / 3.0, 0.0, best);
+            reference_exact_step(&next);
+            double optimum = reference_given_step(best, next.a1,
+                                                  fmax(next.b0, 0.5)); /* switching is safe from 1/2 on */
             double variance = reference_given_step(own, 0.0, probe.gain_uq16 / 65536.0);
             worst = fmax(worst, variance / optimum);
             sums[0] += optimum;
@@ -292,54 +229,11 @@ TEST(estimate_equals_the_reference)
                 x[0] = x[1] = x[2] = got;
                 continue;
             }
-            reference_gains_t g = expected_gains(u, pow(4.0, i / 2), k < 40 ? k - FILTER_WARM_UP_SAMPLES : STEPS);
+            gains_t g = expected_gains(u, pow(4.0, i / 2), k < 40 ? k - FILTER_WARM_UP_SAMPLES : STEPS);
             double a1 = -floor(-g.a1 * 65536.0 + 0.5) / 65536.0;
             double b0 = fmin(floor(g.b0 * 65536.0 + 0.5), 65535.0) / 65536.0;
             double wanted = reference_opt_filter(x, a1, b0, z);
             TEST_ASSERT_TRUE(fabs(got - wanted) < switching_bound() * 1.5 / 131072.0);
-        }
-    }
-}
-
-/* Profiles of section 2.3 of the notes, T = 0.1 s, in degrees. */
-static double profile(int which, double t)
-{
-    double s = fmin(fmax((t - 6.0) / 4.0, 0.0), 1.0);
-    if (which == 0) {
-        return 30.0 * s;
-    }
-    return which == 1 ? 30.0 - 30.0 * cos(PI * s) : 15.0 - 15.0 * cos(2.0 * PI * s);
-}
-
-/* Row (0, 2/3) of that section, exact there, from a constant start: 0..5, 6..10, 11..15 s; 4000 runs, R = 0.6. */
-TEST(roll_experiment_has_the_errors_of_the_notes)
-{
-    static const double expected[3][3] = { { 0.4026, 0.4023, 0.4000 },
-                                           { 0.4026, 0.4041, 0.4000 },
-                                           { 0.4026, 0.4166, 0.4000 } };
-    static const int first[3] = { 0, 60, 110 };
-    static const int last[3] = { 50, 100, 150 };
-    test_random_t random;
-    random_seed(&random, SEED + 4);
-    for (int which = 0; which < 3; which++) {
-        double sums[3] = { 0.0, 0.0, 0.0 };
-        for (int run = 0; run < 4000; run++) {
-            filter_t f = made_opt(false, 4.0);
-            for (int k = 0; k <= 150; k++) {
-                double truth = 100.0 * (profile(which, 0.1 * k) - 30.0);
-                int16_t z = as_sample(truth + 100.0 * sqrt(0.6) * random_normal(&random));
-                if (k == 0) {
-                    filter_reset(&f, z);
-                }
-                double error = (filter_update(&f, z) / 65536.0 - truth) / 100.0;
-                for (int i = 0; i < 3; i++) {
-                    sums[i] += k >= first[i] && k <= last[i] ? error * error : 0.0;
-                }
-            }
-        }
-        for (int i = 0; i < 3; i++) {
-            double mse = sums[i] / 4000.0 / (last[i] - first[i] + 1);
-            TEST_ASSERT_DOUBLE_WITHIN(0.03 * expected[which][i], expected[which][i], mse);
         }
     }
 }

@@ -3,14 +3,12 @@
 #include "reference/linear.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 
 namespace
 {
 using Square = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-constexpr double a1_min = -1.0 / 3.0;
 const Eigen::RowVector3d straight(2.0, -1.0, 0.0);
 const Eigen::RowVector3d bend(-1.0, 2.0, -1.0);
 
@@ -20,17 +18,6 @@ Square closed_loop(double a1, double b0)
     f.row(0) = (1.0 - b0) * (straight + a1 * bend);
     f(1, 0) = f(2, 1) = 1.0;
     return f;
-}
-
-// A denominator that is nothing but rounding means that every a1 is as good: the straight line.
-double clamped_a1(double above, double below, double size)
-{
-    return std::abs(below) > 1e-12 * size ? std::clamp(above / below, a1_min, 0.0) : 0.0;
-}
-
-double gain_of(double pe)
-{
-    return std::clamp(pe / (pe + 1.0), 0.5, 1.0);
 }
 
 // Found by a search that made the largest stretch of the three corners of the clamps small; checked by the test.
@@ -46,33 +33,6 @@ double reference_given_step(double s[9], double a1, double b0)
     covariance = (f * covariance * f.transpose()).eval();
     covariance(0, 0) += b0 * b0;
     return covariance(0, 0);
-}
-
-reference_gains_t reference_opt_exact_step(double s[9])
-{
-    const Eigen::Map<Square> covariance(s);
-    const double below = bend * covariance * bend.transpose();
-    const double above = -(bend * covariance * straight.transpose()).value();
-    const double a1 = clamped_a1(above, below, covariance.diagonal().maxCoeff());
-    const Eigen::RowVector3d h = straight + a1 * bend;
-    const double pe = h * covariance * h.transpose();
-    const double b0 = gain_of(pe);
-    return { a1, pe, b0, reference_given_step(s, a1, b0) };
-}
-
-reference_gains_t reference_opt_u_step(double p[5])
-{
-    Eigen::Map<Eigen::Matrix<double, 5, 1>> past(p);
-    const Eigen::Matrix<double, 1, 5> above(1.0, 6.0, -8.0, 2.0, 0.0);
-    const Eigen::Matrix<double, 1, 5> below(0.0, 8.0, 4.0, -8.0, 2.0);
-    const double a1 = clamped_a1(-(above * past).value(), below * past, past.maxCoeff());
-    const Eigen::RowVector3d h = straight + a1 * bend;
-    const double pe = h.cwiseAbs2() * past.head<3>();
-    const double b0 = gain_of(pe);
-    const double variance = (1.0 - b0) * (1.0 - b0) * pe + b0 * b0;
-    std::rotate(p, p + 4, p + 5);
-    p[0] = variance;
-    return { a1, pe, b0, variance };
 }
 
 double reference_opt_filter(double x[3], double a1, double b0, double z)

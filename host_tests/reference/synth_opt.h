@@ -5,24 +5,12 @@
 #ifndef REFERENCE_SYNTH_OPT_H
 #define REFERENCE_SYNTH_OPT_H
 
-#include <stdbool.h>
-
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-typedef struct {
-    double a1, pe, b0, p; /* pe, p per R */
-} reference_gains_t;
-
-/* Exact covariance from s (3 x 3, row by row, per R; updated), a1 clamped to [-1/3, 0], b0 to [1/2, 1). */
-reference_gains_t reference_opt_exact_step(double s[9]);
-
-/* The same with gains given: the true covariance. Returns the variance of the newest. */
+/* The covariance of the last three errors (3 x 3, row by row, per R; updated). Returns the variance of the newest. */
 double reference_given_step(double s[9], double a1, double b0);
-
-/* Variant U from the last five variances, newest first (updated). */
-reference_gains_t reference_opt_u_step(double p[5]);
 
 /* x_e and x from the last three estimates (updated) with gains given. */
 double reference_opt_filter(double x[3], double a1, double b0, double z);
