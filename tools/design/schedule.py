@@ -48,14 +48,9 @@ def gain_of(pe):
     return clamped(pe / (pe + 1.0), B0_MIN, 1.0)
 
 
-def rank_one(p0_over_r):
-    """The covariance with three identical errors at the start."""
-    return [[max(p0_over_r, P_FLOOR)] * 3 for _ in range(3)]
-
-
-def exact_schedule(p0_over_r, steps, covariance=None):
-    """Steps of the greedy optimum with the exact covariance; `covariance` (3 x 3, in R) replaces the start from P0."""
-    s = covariance or rank_one(p0_over_r)
+def exact_schedule(p0_over_r, steps):
+    """Steps of the greedy optimum with the exact covariance."""
+    s = [[max(p0_over_r, P_FLOOR)] * 3 for _ in range(3)]  # three identical errors
     result = []
     for _ in range(steps):
         a1 = clamped(quotient(-bilinear(BEND, s, STRAIGHT), bilinear(BEND, s, BEND), max(s[i][i] for i in range(3))), A1_MIN, A1_MAX)
@@ -64,11 +59,11 @@ def exact_schedule(p0_over_r, steps, covariance=None):
     return result
 
 
-def advance(s, a1, b0=None):
-    """One step of the covariance with a1 and the optimal or given b0: (Step, new covariance)."""
+def advance(s, a1):
+    """One step of the covariance with a1 and the optimal b0: (Step, new covariance)."""
     h = [STRAIGHT[i] + a1 * BEND[i] for i in range(3)]
     pe = bilinear(h, s, h)
-    b0 = gain_of(pe) if b0 is None else b0
+    b0 = gain_of(pe)
     p = (1.0 - b0) ** 2 * pe + b0 ** 2
     first = [(1.0 - b0) * sum(h[k] * s[k][j] for k in range(3)) for j in range(2)]
     return Step(a1, pe, b0, p), [[p, first[0], first[1]], [first[0], s[0][0], s[0][1]], [first[1], s[1][0], s[1][1]]]
@@ -90,26 +85,11 @@ def u_schedule(p0_over_r, steps):
 SCHEDULES = {"exact": exact_schedule, "u": u_schedule}
 
 
-def true_variances(p0_over_r, gains):
-    """Variance of the estimate (in R) after each of the steps with gains [(a1, b0)...], errors at the start equal."""
-    s = rank_one(p0_over_r)
-    result = []
-    for a1, b0 in gains:
-        step, s = advance(s, a1, b0)
-        result.append(step.p)
-    return result
-
-
 # --- fixed point ---
 
 def quantised(gains):
     """(magnitude of a1, b0) in 1 / 65536, within the clamps."""
     return min(round(-gains[0] * 65536.0), 21845), min(max(round(gains[1] * 65536.0), 32768), 65535)
-
-
-def class_of(p0_over_r):
-    """Index of the library's schedule for P0/R: the nearest on a logarithmic scale."""
-    return min(range(len(RATIOS)), key=lambda i: abs(math.log(RATIOS[i] / p0_over_r)))
 
 
 def library_gains(variant, ratio_class):

@@ -240,13 +240,6 @@ def default_decided():
 
 
 @test
-def the_page_says_what_its_table_decides():
-    found = decided()
-    text = " ".join(default_filter.PAGE.held().split())
-    assert f"The rule chooses **`{found.default}`**" in text and found.why in text, found
-
-
-@test
 def every_build_starts_with_what_the_page_decides():
     default = default_decided()
     ini = FLAG.findall(pathlib.Path("platformio.ini").read_text(encoding="utf-8"))
