@@ -21,7 +21,7 @@ typedef struct {
 
 typedef struct {
     filter_t f[FILTER_KIND_COUNT];
-    reference_filter_t plain, robust;
+    robust_reference_t plain, robust;
     noise_t noise;
 } axis_t;
 
@@ -59,8 +59,8 @@ static void start_axis(axis_t *a, const stream_t *s, int axis, double r_lsb2)
         filter_set_noise(&a->f[kind], r_q8);
     }
     double r = r_lsb2 > 0.0 ? r_lsb2 : 1.0;
-    reference_library(&a->plain, s->rate_hz, r, filter_parameter_q.standard, 0.0, 0, 0.0, median5(s, axis));
-    reference_library(&a->robust, s->rate_hz, r, filter_parameter_q.standard, 3.0, 5, 800.0, median5(s, axis));
+    reference_library(&a->plain, "kf", s->rate_hz, r, filter_parameter_q.standard, 0.0, median5(s, axis));
+    reference_library(&a->robust, "sprf", s->rate_hz, r, filter_parameter_q.standard, 800.0, median5(s, axis));
 }
 
 static void step_axis(axis_t *a, int16_t z, bool estimate, bool warm)
@@ -73,8 +73,8 @@ static void step_axis(axis_t *a, int16_t z, bool estimate, bool warm)
         (void)filter_update(&a->f[kind], z);
     }
     if (warm) {
-        reference_step(&a->plain, z);
-        reference_step(&a->robust, z);
+        (void)robust_reference_step(&a->plain, z);
+        (void)robust_reference_step(&a->robust, z);
     }
 }
 

@@ -1,4 +1,4 @@
-/* lrf against Eigen: the reference against paper 002's numbers, the fixed-point filter against the reference. */
+/* lrf against its reference in double, which test_robust_reference.c holds against numbers of paper 002. */
 #include "reference/filters.h"
 #include "support/test_law.h"
 
@@ -8,22 +8,23 @@
 #define SEED 32
 #define FACTOR 60.85 /* q1 (1 - N^2) + N^2 at q1 = 0.85, N = 20 */
 
-/* 2.06 with outliers, 0.1715 without (by Lyapunov, notes section 3), to 1e-3 of what their four-digit parts give. */
+/* Table 1 at rest, by Riccati and Lyapunov: 2.06 with outliers, to 1e-3 of what its four-digit parts give. */
 TEST(variance_ratios_are_those_of_the_notes)
 {
-    reference_filter_t plain = reference_table_1(1.0);
-    reference_filter_t lrf = reference_table_1(FACTOR);
-    reference_settle(&plain);
-    reference_settle(&lrf);
-    const double outliers = reference_lyapunov(&plain, FACTOR * 0.0064) / reference_lyapunov(&lrf, FACTOR * 0.0064);
-    TEST_ASSERT_DOUBLE_WITHIN(2e-3 * 0.0476, 0.0476, lrf.gain[0]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 1.852e-2, 1.852e-2, reference_lyapunov(&lrf, FACTOR * 0.0064));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 4.750e-3, 4.750e-3, reference_lyapunov(&lrf, 0.0064));
-    const double clean = reference_lyapunov(&plain, 0.0064) / reference_lyapunov(&lrf, 0.0064);
-    printf("LRF: error variance of KF over its own %.4f with outliers, %.5f without\n", outliers, clean);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 2.06, 3.819 / 1.852, outliers);
-    TEST_ASSERT_DOUBLE_WITHIN(0.005, 2.06, outliers);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 0.1715, 0.1715, clean);
+    robust_reference_t kf;
+    robust_reference_t lrf;
+    double p[4];
+    double of_kf[2];
+    double of_lrf[2];
+    TEST_ASSERT_TRUE(robust_reference_table1(&kf, "kf") && robust_reference_table1(&lrf, "lrf"));
+    robust_reference_steady(&kf, p, of_kf);
+    robust_reference_steady(&lrf, p, of_lrf);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-3 * 0.0476, 0.0476, of_lrf[0]);
+    const double plain = robust_reference_lyapunov(&kf, of_kf, FACTOR * 0.0064);
+    const double merged = robust_reference_lyapunov(&lrf, of_lrf, FACTOR * 0.0064);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 1.852e-2, 1.852e-2, merged);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 4.750e-3, 4.750e-3, robust_reference_lyapunov(&lrf, of_lrf, 0.0064));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 2.06, 3.819 / 1.852, plain / merged);
 }
 
 /* Steady gain w1 of a filter that reads zeros. */
@@ -39,13 +40,16 @@ static double steady_gain(filter_t *f)
  */
 TEST(steady_gains_are_those_of_the_paper)
 {
-    reference_filter_t reference = reference_table_1(FACTOR);
-    reference_settle(&reference);
+    robust_reference_t reference;
+    double p[4];
+    double gain[2];
+    TEST_ASSERT_TRUE(robust_reference_table1(&reference, "lrf"));
+    robust_reference_steady(&reference, p, gain);
     filter_config_t config = filter_defaults(&filter_law_lrf, 1000);
     config.value[LRF_R_LSB2_Q8] = 100 * 256;
     config.value[LRF_Q_LSB2_S3] = 8579;
     filter_t f = made(&filter_law_lrf, &config);
-    TEST_ASSERT_DOUBLE_WITHIN(0.005 * reference.gain[0], reference.gain[0], steady_gain(&f));
+    TEST_ASSERT_DOUBLE_WITHIN(0.005 * gain[0], gain[0], steady_gain(&f));
     config.value[LRF_RATIO_UQ8] = 256;
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_lrf, &config));
     TEST_ASSERT_DOUBLE_WITHIN(0.005 * 0.12730, 0.12730, steady_gain(&f));
@@ -58,16 +62,16 @@ TEST(estimate_equals_the_reference)
     random_seed(&random, SEED);
     printf("seed %d\n", SEED);
     filter_config_t config = filter_defaults(&filter_law_lrf, 1000);
-    reference_filter_t r;
+    robust_reference_t r;
     filter_t f = made(&filter_law_lrf, &config);
     feed(&f, 0, FILTER_WARM_UP_SAMPLES);
     double sigma = sqrt(config.value[LRF_R_LSB2_Q8] / 256.0);
-    reference_library(&r, 100.0, FACTOR * sigma * sigma, config.value[LRF_Q_LSB2_S3], 0.0, 0, 0.0, 0.0);
+    reference_library(&r, "kf", 100.0, FACTOR * sigma * sigma, config.value[LRF_Q_LSB2_S3], 0.0, 0.0);
     for (int k = 0; k < 5000; k++) {
         double spread = random_uniform(&random) < 0.15 ? 20.0 * sigma : sigma;
         int16_t z = as_sample(50.0 * sin(0.005 * k) + spread * random_normal(&random));
         double x = filter_update(&f, z) / 65536.0;
-        reference_step(&r, z);
+        (void)robust_reference_step(&r, z);
         double w1 = r.gain[0];
         double error = 1.5 / 65536.0 / w1 + w1 * 0.5 * (8.0 / 16384.0 + 1.0 / f.own.kalman.q22_uq26);
         TEST_ASSERT_DOUBLE_WITHIN(2.0 * (error * 60.0 * sigma / w1 + 1.0 / 256.0), r.x[0], x);

@@ -1,5 +1,4 @@
 /* The double references of paper 002 against the golden rows, exact covariances and each other. */
-#include "reference/filters.h"
 #include "reference/robust.h"
 #include "support/test.h"
 
@@ -29,22 +28,6 @@ static robust_reference_t golden_filter(int column)
     return f;
 }
 
-/* Those of them that reference/filters.h has too: KF, LRF, SpRF+, soft+. */
-static const int in_filters[] = { 0, 1, 7, 8 };
-enum { IN_FILTERS = sizeof in_filters / sizeof in_filters[0] };
-
-static reference_filter_t golden_reference(int column)
-{
-    reference_filter_t f = reference_table_1(column == 1 ? 60.85 : 1.0);
-    if (column >= FIRST_REACQUIRING) {
-        f.gate2 = 9.0;
-        f.reacquire = REACQUIRE;
-        f.agree = AGREE_DEG;
-    }
-    f.soft2 = (column == 8) ? 4.0 : 0.0;
-    return f;
-}
-
 static double auxiliary(const robust_reference_t *f, int column)
 {
     if (column >= 6) {
@@ -68,21 +51,6 @@ static void compare(robust_reference_t *filters, const double *cells)
     }
 }
 
-static void compare_reference(reference_filter_t *references, const double *cells)
-{
-    for (int i = 0; i < IN_FILTERS; i++) {
-        const double *wanted = cells + FIRST_COLUMN + 4 * in_filters[i];
-        reference_filter_t *f = &references[i];
-        reference_step(f, cells[1]);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-10, wanted[0], f->x[0]);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-10, wanted[1], f->x[1]);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-10, wanted[2], f->p[0]);
-        if (in_filters[i] >= 7) {
-            TEST_ASSERT_EQUAL_INT((int)wanted[3], f->reacquired ? 2 : (f->gated ? 1 : 0));
-        }
-    }
-}
-
 TEST(golden_rows_are_reproduced)
 {
     FILE *file = fopen(GOLDEN, "r");
@@ -92,10 +60,6 @@ TEST(golden_rows_are_reproduced)
     robust_reference_t filters[GOLDEN_FILTERS];
     for (int i = 0; i < GOLDEN_FILTERS; i++) {
         filters[i] = golden_filter(i);
-    }
-    reference_filter_t references[IN_FILTERS];
-    for (int i = 0; i < IN_FILTERS; i++) {
-        references[i] = golden_reference(in_filters[i]);
     }
     char line[2000];
     int rows = 0;
@@ -107,7 +71,6 @@ TEST(golden_rows_are_reproduced)
         }
         if (n == 40 && line[0] != '#') {
             compare(filters, cells);
-            compare_reference(references, cells);
             rows++;
         }
     }
@@ -129,6 +92,8 @@ TEST(covariance_of_the_kf_comes_to_rest)
     /* K = P H' / R after the update */
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, p[0] / f.r, gain[0]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, p[2] / f.r, gain[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 0.1273, 0.12730, gain[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 0.3503, 0.35032, gain[1]);
 }
 
 /* Error variances by Lyapunov's equation: outliers make the noise 0.85 + 0.15 x 400 = 60.85 times as large. */
@@ -146,7 +111,6 @@ TEST(lrf_gains_twofold_with_outliers_and_loses_sixfold_without)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, p[0], robust_reference_lyapunov(&kf, kf_gain, kf.r));
     robust_reference_steady(&lrf, p, lrf_gain);
     double with = 60.85 * kf.r;
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, with, robust_reference_r(&lrf));
     double ratio_with = robust_reference_lyapunov(&kf, kf_gain, with) / robust_reference_lyapunov(&lrf, lrf_gain, with);
     double ratio_clean = robust_reference_lyapunov(&kf, kf_gain, kf.r) /
                          robust_reference_lyapunov(&lrf, lrf_gain, kf.r);

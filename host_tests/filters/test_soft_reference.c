@@ -17,12 +17,17 @@ static filter_config_t config_100hz(void)
 }
 
 /* The reference in the state that the filter is in; P in units of R, rates per sample. */
-static reference_filter_t reference_in_the_state_of(const filter_t *f)
+static robust_reference_t reference_in_the_state_of(const filter_t *f)
 {
     const double r = f->own.kalman.r_lsb2_q8 / 256.0;
     const double one = 67108864.0;
     const double k = f->own.kalman.coarse ? 4.0 * f->own.kalman.gate_lsb2_uq6 : f->own.kalman.gate_lsb2_uq6 / 64.0;
-    reference_filter_t reference = { .period_s = 1.0, .r = r, .r_gain = r, .soft2 = k / r };
+    robust_reference_t reference;
+    TEST_ASSERT_TRUE(robust_reference_table1(&reference, "soft"));
+    reference.period_s = 1.0;
+    reference.r = r;
+    reference.gate_sigma = HUGE_VAL;
+    reference.softgate_sigma = sqrt(k / r);
     reference.q[3] = f->own.kalman.q22_uq26 / one * r;
     reference.x[0] = f->x_lsb_q16 / 65536.0;
     reference.x[1] = f->rate_lsb / 65536.0;
@@ -45,14 +50,15 @@ static void assert_step_equals_the_reference(const filter_t *start, int16_t z)
     if (f.own.kalman.p.p11 >= 0x4000000U || ((f.own.kalman.p.p12 | f.own.kalman.p.p22) & 0xC0000000U) != 0U) {
         return; /* P at its limit is not predicted, and the reference knows no limit */
     }
-    reference_filter_t r = reference_in_the_state_of(&f);
+    robust_reference_t r = reference_in_the_state_of(&f);
+    const double soft2 = r.softgate_sigma * r.softgate_sigma;
     (void)filter_update(&f, z);
-    reference_step(&r, z);
-    if (r.innovation * r.innovation <= r.soft2 * r.r * 53.0 || (f.flags & FILTER_SATURATED) != 0U) {
+    (void)robust_reference_step(&r, z);
+    if (r.innovation * r.innovation <= soft2 * r.r * 53.0 || (f.flags & FILTER_SATURATED) != 0U) {
         return; /* S <= 53 R: not surely beyond the soft gate */
     }
     const double size = fabs(r.innovation);
-    const double m = r.soft2 * r.r / (size * size);
+    const double m = soft2 * r.r / (size * size);
     const double e = 1.0 / 1048576.0 + m * (2.0 / 256.0 / size + 1.0 / 8192.0);
     const double p11 = r.gain[0] / m;
     const double p12 = r.gain[1] / m;
@@ -108,9 +114,8 @@ TEST(errors_equal_those_of_the_reference)
     config.value[SOFT_GATE_SIGMA_Q8] = 0;
     filter_t f = made(&filter_law_soft, &config);
     feed(&f, 0, FILTER_WARM_UP_SAMPLES);
-    reference_filter_t r;
-    reference_library(&r, 100.0, R_LSB2, config.value[SOFT_Q_LSB2_S3], 0.0, 0, 800.0, 0.0);
-    r.soft2 = 4.0;
+    robust_reference_t r;
+    reference_library(&r, "soft", 100.0, R_LSB2, config.value[SOFT_Q_LSB2_S3], 800.0, 0.0);
     test_random_t random;
     random_seed(&random, SEED);
     printf("seed %d\n", SEED);
@@ -121,7 +126,7 @@ TEST(errors_equal_those_of_the_reference)
         double sigma = random_uniform(&random) < 0.15 ? 80.0 : 4.0;
         int16_t z = as_sample(truth + sigma * random_normal(&random));
         double x = filter_update(&f, z) / 65536.0 - truth;
-        reference_step(&r, z);
+        (void)robust_reference_step(&r, z);
         fixed += x * x;
         exact += (r.x[0] - truth) * (r.x[0] - truth);
     }
@@ -140,18 +145,17 @@ TEST(without_reacquisition_it_returns_as_the_reference)
     config.value[SOFT_RATE_MAX_LSB_S] = 1000000;
     for (int i = 0; i < 4; i++) {
         filter_t f = made(&filter_law_soft, &config);
-        reference_filter_t r;
-        reference_library(&r, 100.0, R_LSB2, config.value[SOFT_Q_LSB2_S3], 0.0, 0, 0.0, 0.0);
-        r.soft2 = 4.0;
+        robust_reference_t r;
+        reference_library(&r, "soft", 100.0, R_LSB2, config.value[SOFT_Q_LSB2_S3], 0.0, 0.0);
         for (int k = 0; k < 500; k++) {
             (void)filter_update(&f, 0);
-            reference_step(&r, 0.0);
+            (void)robust_reference_step(&r, 0.0);
         }
         int fixed = 0;
         int exact = 0;
         for (int k = 1; k < 5000; k++) {
             double x = filter_update(&f, (int16_t)steps_lsb[i]) / 65536.0;
-            reference_step(&r, steps_lsb[i]);
+            (void)robust_reference_step(&r, steps_lsb[i]);
             fixed = (fixed == 0 && fabs(x - steps_lsb[i]) < 4.0) ? k : fixed;
             exact = (exact == 0 && fabs(r.x[0] - steps_lsb[i]) < 4.0) ? k : exact;
         }

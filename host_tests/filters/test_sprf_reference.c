@@ -36,10 +36,10 @@ TEST(gate_is_at_gate_sigmas_of_the_innovation)
         config.value[SPRF_GATE_SIGMA_Q8] = gates_q8[i % 5];
         config.value[SPRF_R_LSB2_Q8] = r_lsb2[i / 5] * 256;
         filter_t f = settled(&config, 0);
-        reference_filter_t r;
-        reference_library(&r, 100.0, r_lsb2[i / 5], config.value[SPRF_Q_LSB2_S3], 0.0, 0, 0.0, 0.0);
+        robust_reference_t r;
+        reference_library(&r, "kf", 100.0, r_lsb2[i / 5], config.value[SPRF_Q_LSB2_S3], 0.0, 0.0);
         for (int k = 0; k < 295; k++) {
-            reference_step(&r, 0.0);
+            (void)robust_reference_step(&r, 0.0);
         }
         reference_coast(&r);
         double limit = gates_q8[i % 5] / 256.0 * sqrt(r.p[0] + r.r);

@@ -11,7 +11,7 @@ enum { R, Q, SAMPLES = 30000, RUN_S = 8, RUN_LEAST = 80, SETTLING = 2000 };
 
 typedef struct {
     filter_t filter;
-    reference_filter_t reference;
+    robust_reference_t reference;
     double x, v;
 } run_t;
 
@@ -28,7 +28,7 @@ static void one_sample(run_t *run, const filter_config_t *config, test_random_t 
     const double noise = sqrt(config->value[R] / 256.0 - 1.0 / 12.0) * random_normal(random);
     const int16_t z = as_sample(run->x + noise);
     (void)filter_update(&run->filter, z);
-    reference_step(&run->reference, z);
+    (void)robust_reference_step(&run->reference, z);
 }
 
 static void judge(sums_t *sums, const run_t *run, double r_lsb2)
@@ -55,10 +55,10 @@ own_model_t own_model(const filter_law_t *law, const filter_config_t *config, ui
     test_random_t random;
     random_seed(&random, seed);
     sums_t sums = { 0, 0, 0, 0, 0 };
-    reference_filter_t settled;
-    reference_library(&settled, rate_hz, r_lsb2, config->value[Q], 0.0, 0, 0.0, 0.0);
+    robust_reference_t settled;
+    reference_library(&settled, "kf", rate_hz, r_lsb2, config->value[Q], 0.0, 0.0);
     for (int k = 0; k < SETTLING; k++) {
-        reference_step(&settled, 0.0);
+        (void)robust_reference_step(&settled, 0.0);
     }
     while (sums.used + sums.refused < SAMPLES) {
         run_t run = { .reference = settled, .x = 0.0, .v = 0.0 };
