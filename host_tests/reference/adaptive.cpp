@@ -233,28 +233,6 @@ void reference_adaptive_coast(reference_adaptive_t *f)
     f->now.x = std::clamp(f->now.x + f->now.rate, -x_max, x_max);
 }
 
-double reference_fading_step(reference_fading_t *f, double r, double z)
-{
-    constexpr double share = 0.25;
-    if (++f->samples == 1) {
-        *f = { z, 0.0, 0.0, 0.0, 1 };
-        return z;
-    }
-    const double expected = f->x + f->v;
-    const double u = z - expected;
-    // theta = 0 knows no prediction's variance: two samples make a line, whose next point has 5 R
-    const double gain = (1.0 - f->theta * f->theta > 0.98) ? 5.0 : reference_fading_prediction_gain(1.0 - f->theta);
-    f->mean += share * (std::clamp(u / std::sqrt(r * (1.0 + gain)), -4.0, 4.0) - f->mean);
-    if (f->samples > 6 && std::fabs(f->mean) > 2.2 * std::sqrt(share / (2.0 - share))) {
-        f->theta = std::min(f->theta, 0.4);
-    } else {
-        f->theta = 0.9 - 0.92 * (0.9 - f->theta);
-    }
-    f->x = expected + (1.0 - f->theta * f->theta) * u;
-    f->v += (1.0 - f->theta) * (1.0 - f->theta) * u;
-    return f->x;
-}
-
 double reference_adaptive_scatter(double k, double share, double bad, bool guarded)
 {
     double settled = 1.0; // by what the innovations deviate

@@ -1,6 +1,6 @@
 /*
- * adaptive in double: one step of the same structure with the bound of what fixed point may differ by, the float filter
- * that it grew from, and the fading memory's theory.
+ * adaptive in double: one step of the same structure with the bound of what fixed point may differ by, and the fading
+ * memory's theory.
  */
 #ifndef REFERENCE_ADAPTIVE_H
 #define REFERENCE_ADAPTIVE_H
@@ -38,13 +38,6 @@ void reference_adaptive_begin(reference_adaptive_t *f, double z);
  */
 bool reference_adaptive_step(reference_adaptive_t *f, double z, reference_adaptive_value_t *bound);
 void reference_adaptive_coast(reference_adaptive_t *f);
-
-/* AdaptiveFading of the notes (5.3): theta between 0.4 and 0.9, driven by a mean of the normalised innovations. */
-typedef struct {
-    double x, v, theta, mean;
-    int samples;
-} reference_fading_t;
-double reference_fading_step(reference_fading_t *f, double r, double z);
 
 /*
  * At rest, with the memory's k, in white noise of sigma 1: what the scatter settles at. The innovations less their mean
