@@ -193,18 +193,3 @@ void reference_nav_variances(const reference_nav_t *f, double *variance)
         variance[ours(i)] = p(i, i);
     }
 }
-
-void reference_nav_covariance(const reference_nav_t *f, double *out)
-{
-    const Matrix p = covariance_of(*f);
-    for (int i = 0; i < f->states; i++) {
-        for (int j = 0; j < f->states; j++) {
-            out[ours(i) * f->states + ours(j)] = p(i, j);
-        }
-    }
-}
-
-void reference_nav_phi(const reference_nav_t *f, double *phi, double step_s, const double force[3], const double dcm[9])
-{
-    Eigen::Map<Rows>(phi, f->states, f->states) = phi_of(*f, step_s, force, dcm);
-}

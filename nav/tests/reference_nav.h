@@ -46,13 +46,6 @@ void reference_nav_measure(reference_nav_t *f, bool field, bool gps, bool down, 
 /* Diagonal of P in nav/lib's order: position, velocity, attitude, drift. */
 void reference_nav_variances(const reference_nav_t *f, double *variance);
 
-/* P in nav/lib's order, row-major. */
-void reference_nav_covariance(const reference_nav_t *f, double *p);
-
-/* Phi of (3.5) or (3.41), row-major, paper's order. */
-void reference_nav_phi(const reference_nav_t *f, double *phi, double step_s, const double force[3],
-                       const double dcm[9]);
-
 /* tau (3.34), row-major; as printed: with 1 + mag1 for any length of mag. */
 void reference_nav_tau(double tau[9], const double mag[3], bool printed);
 
