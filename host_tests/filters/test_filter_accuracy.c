@@ -59,8 +59,10 @@ static void start_axis(axis_t *a, const stream_t *s, int axis, double r_lsb2)
         filter_set_noise(&a->f[kind], r_q8);
     }
     double r = r_lsb2 > 0.0 ? r_lsb2 : 1.0;
-    reference_library(&a->plain, "kf", s->rate_hz, r, filter_parameter_q.standard, 0.0, median5(s, axis));
-    reference_library(&a->robust, "sprf", s->rate_hz, r, filter_parameter_q.standard, 800.0, median5(s, axis));
+    reference_library(&a->plain, filter_listed_name(plain_kind()), s->rate_hz, r, filter_parameter_q.standard, 0, 0.0,
+                      median5(s, axis));
+    reference_library(&a->robust, filter_listed_name(robust_kind()), s->rate_hz, r, filter_parameter_q.standard, 5,
+                      800.0, median5(s, axis));
 }
 
 static void step_axis(axis_t *a, int16_t z, bool estimate, bool warm)

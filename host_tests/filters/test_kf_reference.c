@@ -14,7 +14,7 @@ static void start_both(filter_t *f, robust_reference_t *r, const filter_config_t
     TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(f, &filter_law_kf, config));
     feed(f, 0, FILTER_WARM_UP_SAMPLES);
     reference_library(r, "kf", config->rate_dhz / 10.0, config->value[KF_R_LSB2_Q8] / 256.0,
-                      config->value[KF_Q_LSB2_S3], 0.0, 0.0);
+                      config->value[KF_Q_LSB2_S3], 0, 0.0, 0.0);
 }
 
 /*

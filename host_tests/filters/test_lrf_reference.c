@@ -1,5 +1,6 @@
 /* lrf against its reference in double, which test_robust_reference.c holds against numbers of paper 002. */
 #include "reference/filters.h"
+#include "support/roles.h"
 #include "support/test_law.h"
 
 #include <math.h>
@@ -11,20 +12,21 @@
 /* Table 1 at rest, by Riccati and Lyapunov: 2.06 with outliers, to 1e-3 of what its four-digit parts give. */
 TEST(variance_ratios_are_those_of_the_notes)
 {
-    robust_reference_t kf;
+    robust_reference_t plain;
     robust_reference_t lrf;
     double p[4];
-    double of_kf[2];
+    double of_plain[2];
     double of_lrf[2];
-    TEST_ASSERT_TRUE(robust_reference_table1(&kf, "kf") && robust_reference_table1(&lrf, "lrf"));
-    robust_reference_steady(&kf, p, of_kf);
+    TEST_ASSERT_TRUE(robust_reference_table1(&plain, filter_listed_name(plain_kind())) &&
+                     robust_reference_table1(&lrf, "lrf"));
+    robust_reference_steady(&plain, p, of_plain);
     robust_reference_steady(&lrf, p, of_lrf);
     TEST_ASSERT_DOUBLE_WITHIN(2e-3 * 0.0476, 0.0476, of_lrf[0]);
-    const double plain = robust_reference_lyapunov(&kf, of_kf, FACTOR * 0.0064);
+    const double unmerged = robust_reference_lyapunov(&plain, of_plain, FACTOR * 0.0064);
     const double merged = robust_reference_lyapunov(&lrf, of_lrf, FACTOR * 0.0064);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 1.852e-2, 1.852e-2, merged);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 4.750e-3, 4.750e-3, robust_reference_lyapunov(&lrf, of_lrf, 0.0064));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 2.06, 3.819 / 1.852, plain / merged);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * 2.06, 3.819 / 1.852, unmerged / merged);
 }
 
 /* Steady gain w1 of a filter that reads zeros. */
@@ -66,7 +68,8 @@ TEST(estimate_equals_the_reference)
     filter_t f = made(&filter_law_lrf, &config);
     feed(&f, 0, FILTER_WARM_UP_SAMPLES);
     double sigma = sqrt(config.value[LRF_R_LSB2_Q8] / 256.0);
-    reference_library(&r, "kf", 100.0, FACTOR * sigma * sigma, config.value[LRF_Q_LSB2_S3], 0.0, 0.0);
+    reference_library(&r, filter_listed_name(plain_kind()), 100.0, FACTOR * sigma * sigma, config.value[LRF_Q_LSB2_S3],
+                      0, 0.0, 0.0);
     for (int k = 0; k < 5000; k++) {
         double spread = random_uniform(&random) < 0.15 ? 20.0 * sigma : sigma;
         int16_t z = as_sample(50.0 * sin(0.005 * k) + spread * random_normal(&random));

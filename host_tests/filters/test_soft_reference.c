@@ -115,7 +115,7 @@ TEST(errors_equal_those_of_the_reference)
     filter_t f = made(&filter_law_soft, &config);
     feed(&f, 0, FILTER_WARM_UP_SAMPLES);
     robust_reference_t r;
-    reference_library(&r, "soft", 100.0, R_LSB2, config.value[SOFT_Q_LSB2_S3], 800.0, 0.0);
+    reference_library(&r, "soft", 100.0, R_LSB2, config.value[SOFT_Q_LSB2_S3], 0, 800.0, 0.0);
     test_random_t random;
     random_seed(&random, SEED);
     printf("seed %d\n", SEED);
@@ -146,7 +146,7 @@ TEST(without_reacquisition_it_returns_as_the_reference)
     for (int i = 0; i < 4; i++) {
         filter_t f = made(&filter_law_soft, &config);
         robust_reference_t r;
-        reference_library(&r, "soft", 100.0, R_LSB2, config.value[SOFT_Q_LSB2_S3], 0.0, 0.0);
+        reference_library(&r, "soft", 100.0, R_LSB2, config.value[SOFT_Q_LSB2_S3], 0, 0.0, 0.0);
         for (int k = 0; k < 500; k++) {
             (void)filter_update(&f, 0);
             (void)robust_reference_step(&r, 0.0);

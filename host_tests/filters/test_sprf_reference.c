@@ -37,7 +37,7 @@ TEST(gate_is_at_gate_sigmas_of_the_innovation)
         config.value[SPRF_R_LSB2_Q8] = r_lsb2[i / 5] * 256;
         filter_t f = settled(&config, 0);
         robust_reference_t r;
-        reference_library(&r, "kf", 100.0, r_lsb2[i / 5], config.value[SPRF_Q_LSB2_S3], 0.0, 0.0);
+        reference_library(&r, "kf", 100.0, r_lsb2[i / 5], config.value[SPRF_Q_LSB2_S3], 0, 0.0, 0.0);
         for (int k = 0; k < 295; k++) {
             (void)robust_reference_step(&r, 0.0);
         }

@@ -4,14 +4,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using Matrix = Eigen::Matrix<double, 2, 2, Eigen::RowMajor>;
 
-void reference_library(robust_reference_t *f, const char *name, double rate_hz, double r, double q, double rate_max,
-                       double x0)
+void reference_library(robust_reference_t *f, const char *name, double rate_hz, double r, double q, int reacquire,
+                       double rate_max, double x0)
 {
-    const bool restarts = std::strcmp(name, "sprf") == 0;
     const double t = 1.0 / rate_hz;
     const double q22 = std::clamp(q * t * t * t / r, 4.0 / 67108864.0, 14.0);
     const double start = std::clamp(40000.0 * t * t / r, q22, 14.0);
@@ -19,10 +17,10 @@ void reference_library(robust_reference_t *f, const char *name, double rate_hz, 
     f->period_s = t;
     f->r = r;
     f->q[3] = q22 * r / (t * t);
-    f->gate_sigma = restarts ? 3.0 : HUGE_VAL;
-    f->reacquire = restarts ? 5 : 0;
+    f->gate_sigma = reacquire != 0 ? 3.0 : HUGE_VAL;
+    f->reacquire = reacquire;
     f->agree = 3.0 * std::sqrt(2.0 * r) + rate_max * t;
-    f->doubts = restarts;
+    f->doubts = reacquire != 0;
     f->rate_max = rate_max;
     f->x[0] = x0;
     f->x[1] = 0.0;

@@ -3,6 +3,7 @@
 
 #include "reference/filters.h"
 #include "support/random.h"
+#include "support/roles.h"
 #include "unity.h"
 
 #include <math.h>
@@ -56,7 +57,7 @@ own_model_t own_model(const filter_law_t *law, const filter_config_t *config, ui
     random_seed(&random, seed);
     sums_t sums = { 0, 0, 0, 0, 0 };
     robust_reference_t settled;
-    reference_library(&settled, "kf", rate_hz, r_lsb2, config->value[Q], 0.0, 0.0);
+    reference_library(&settled, filter_listed_name(plain_kind()), rate_hz, r_lsb2, config->value[Q], 0, 0.0, 0.0);
     for (int k = 0; k < SETTLING; k++) {
         (void)robust_reference_step(&settled, 0.0);
     }

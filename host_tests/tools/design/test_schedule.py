@@ -1,5 +1,5 @@
-"""tools/design/schedule.py: the committed table against a new one, which test_synth_opt_reference.c holds against double; what is emitted, and what bad
-words get."""
+"""tools/design/schedule.py: the committed table against a new one, which test_synth_opt_reference.c holds against double; what is emitted, and
+what bad words get."""
 import pathlib
 import re
 import subprocess
