@@ -1,5 +1,6 @@
 """More faults of the simulator: what the bus, the MCU and the UART suffer; part of system_tests.py."""
 import functools
+import math
 import re
 
 from system_injections import REST, altered, bus_probe, injected
@@ -41,6 +42,16 @@ def glitch_on_int1_is_one_edge_more():
     _, _, served, stats = injected("glitch", *[f"{1000 + 37 * i}.3ms:glitch" for i in range(20)], max_ms=3000)
     near = sum(min(abs(1000300 + 37000 * i - int(s["t_us"])) for s in served) < 1000 for i in range(20))
     assert 20 - near <= stats["isr_int0_n"] - edges <= 20, (edges, near, stats["isr_int0_n"])
+
+
+@test
+def glitch_on_int1_that_is_over_when_its_handler_runs_is_no_data_ready():
+    """Only INT1 that stays high without a new sample counts as empty (docs/faults.md)."""
+    for cycles, counted in ((16, range(1)), (64, range(15, 21))):
+        faults = [f"{1000 + 37 * i}.3ms:glitch:{cycles}" for i in range(20)]
+        _, notes, _, _ = injected("short-glitch", *faults, max_ms=2600, options=("--cmd", "2500:status"))
+        empty = [int(count) for count in re.findall(r"^# readings torn 0, empty (\d+),", "\n".join(notes), re.M)]
+        assert len(empty) == 1 and empty[0] in counted, (cycles, notes)
 
 
 @test
@@ -176,6 +187,8 @@ def flickering(name, fault, rate):
     assert stats["resets"] == 0 and stats["rows_wrong"] == 0, (name, stats["resets"], stats["rows_wrong"])
     assert calm["rows"] - 2 <= stats["rows"] <= calm["rows"] + 1, f"{name}: {stats['rows']} rows, {calm['rows']} without the fault"
     assert stats["rows_stale"] == 0 and stats["sensor_overruns"] == 0, (name, stats["rows_stale"], stats["sensor_overruns"])
+    if ":storm:" in fault:  # 8 or 9 edges, then none for 31 ticks (hal_drdy.h)
+        assert stats["isr_int0_n"] - calm["isr_int0_n"] <= 9 + 8 * math.ceil(2_000_000 / (32 * 8192)), (name, stats["isr_int0_n"])
     # over 6 s, of which the fault lasts 2
     assert (stats["cpu_load"] - calm["cpu_load"]) * 3 < 0.2, f"{name}: load {calm['cpu_load']} to {stats['cpu_load']}"
     return [note for note in notes if note.startswith("# fault")]

@@ -36,6 +36,7 @@ static bool frozen;
 static bool has_kept;
 static int16_t kept[AXES];
 static uint64_t pulse_at = NEVER; /* the next pulse on INT1, or its end */
+static uint64_t glitch_cycles = PULSE_CYCLES;
 static uint64_t pulse_period;     /* 0: one pulse */
 static bool mixing;               /* the master reads data of the previous burst, until the end of this one */
 static uint8_t data_before[DATA_BYTES];
@@ -189,7 +190,10 @@ uint64_t alter_next(void)
 /* Cycles; in a storm a pulse lasts at most half of its period. */
 static uint64_t pulse_length(void)
 {
-    return pulse_period != 0 && pulse_period < 2 * PULSE_CYCLES ? pulse_period / 2 : PULSE_CYCLES;
+    if (pulse_period == 0) {
+        return glitch_cycles;
+    }
+    return pulse_period < 2 * PULSE_CYCLES ? pulse_period / 2 : PULSE_CYCLES;
 }
 
 /* A short pulse opposite to the level of INT1. */
@@ -227,6 +231,7 @@ void alter_begin(const fault_t *fault)
         pulse_at = in_pulse ? pulse_at : mcu->cycle;
         break;
     case KIND_GLITCH:
+        glitch_cycles = parameter;
         pulse_at = pulse_at == NEVER ? mcu->cycle : pulse_at;
         break;
     case KIND_MIXED:

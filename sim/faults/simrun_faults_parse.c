@@ -40,7 +40,7 @@ const kind_properties_t fault_kinds[KIND_COUNT] = {
     [KIND_ODR] = { "odr", true, false, true, false, -200000, 50000, 200000 },
     [KIND_RXFLOOD] = { .name = "rxflood", .lasts = true, .detectable = true },
     [KIND_MIXED] = { .name = "mixed", .on_bus = true },
-    [KIND_GLITCH] = { .name = "glitch", .detectable = true },
+    [KIND_GLITCH] = { "glitch", false, false, true, false, 1, 64, 64 },
     [KIND_CLIP] = { "clip", true, false, true, true, 0, 2, 2 },
     [KIND_TXSTALL] = { .name = "txstall", .lasts = true, .detectable = true },
     [KIND_RXSPOIL] = { "rxspoil", false, false, true, false, 0, 0, 1 },
