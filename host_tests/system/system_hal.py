@@ -45,7 +45,10 @@ TIMER, SLEEP = "a 16-bit register of Timer1 is used with interrupts on", "SLEEP 
 EEPROM = "an EEPROM byte is written with interrupts on"
 BITES = "the watchdog is on with its shortest period since it bit"
 OPEN = "    WDTCSR = _BV(WDCE) | _BV(WDE);\n"  # four cycles for the write that changes it
+EIGHT_BITS = "UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);"
 RULES = (
+    ("hal_probe", "hal/avr/hal_uart.c", EIGHT_BITS, "UCSR0C = _BV(UCSZ01);", "the UART's frame is not 8N1"),
+    ("hal_probe", "hal/avr/hal_uart.c", EIGHT_BITS, "UCSR0C = _BV(UCSZ01) | _BV(UCSZ00) | _BV(USBS0);", "the UART's frame is not 8N1"),
     ("hal_probe", "hal/avr/hal_sleep.c", "        cli();\n", "", SLEEP),
     ("hal_probe", "hal/avr/hal_sleep.c", "        sei();\n        sleep_cpu", "        sei();\n        __builtin_avr_nop();\n        sleep_cpu",
      SLEEP),
@@ -55,6 +58,8 @@ RULES = (
     ("hal_probe", "hal/avr/hal_eeprom.c", "hal_irq_save();\n    EECR", "SREG;\n    EECR", EEPROM),
     ("hal_probe", "hal/avr/hal_eeprom.c", "EECR |= _BV(EEMPE);\n", "EECR |= _BV(EEMPE);\n    __builtin_avr_delay_cycles(6);\n",
      "EEPE is set more than four cycles after EEMPE"),
+    ("hal_probe", "hal/avr/hal_i2c.c", "    for (uint8_t clocks", "    TWCR = _BV(TWIE);\n    for (uint8_t clocks",
+     "the two-wire interrupt is enabled without the interface"),
     ("watchdog_probe", "hal/avr/hal_watchdog.c", "    MCUSR = 0;\n", "", BITES),
     *(("watchdog_probe", "hal/avr/hal_watchdog.c", "    wdt_disable();\n", instead, BITES) for instead in (
         "", "    WDTCSR = 0;\n", OPEN, f"{OPEN}    WDTCSR = _BV(WDE);\n", "    WDTCSR = _BV(WDCE);\n    WDTCSR = 0;\n",

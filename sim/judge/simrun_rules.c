@@ -30,6 +30,8 @@ enum {
     REG_TCNT1L = 0x84,
     REG_OCR1BH = 0x8B,
     REG_TWCR = 0xBC,
+    REG_UCSR0C = 0xC2,
+    FRAME_8N1 = 0x06,
     BIT_TWIE = 0x01,
     BIT_TWEN = 0x04,
     BIT_TWSTO = 0x10,
@@ -114,9 +116,15 @@ static void check_watchdog(uint8_t value)
     }
 }
 
-/* 22.9.2: TWSTO is cleared once the STOP is on the bus. */
+/*
+ * 22.9.2: TWSTO is cleared once the STOP is on the bus; TWIE asks for the interrupt while TWINT is set, whether the
+ * interface is on or not.
+ */
 static void check_two_wire(uint8_t value)
 {
+    if ((value & (BIT_TWIE | BIT_TWEN)) == BIT_TWIE) {
+        broken("the two-wire interrupt is enabled without the interface: what was left in TWINT runs its handler");
+    }
     if ((mcu->data[REG_TWCR] & BIT_TWSTO) != 0 && (value & BIT_TWSTA) != 0) {
         broken("a START is asked for while a STOP is on its way");
     }
@@ -133,6 +141,14 @@ static void on_two_wire(avr_irq_t *irq, uint32_t running, void *param)
         broken("the two-wire handler ends without clearing TWINT: it runs again at once, and again");
     }
     two_wire_answered = false;
+}
+
+/* Tables 20-8 to 20-11: eight bits, no parity, one stop bit, which is what the other end reads. */
+static void check_frame(uint8_t value)
+{
+    if (value != FRAME_8N1) {
+        broken("the UART's frame is not 8N1");
+    }
 }
 
 /* 11.9.1: a flag is cleared by writing zero to it; ones do not set it. */
@@ -198,6 +214,7 @@ void rules_start(void)
     watch_writes(REG_EECR, check_eeprom);
     watch_writes(REG_WDTCSR, check_watchdog);
     watch_writes(REG_TWCR, check_two_wire);
+    watch_writes(REG_UCSR0C, check_frame);
     watch_writes(REG_MCUSR, check_causes);
     watch_writes(REG_DDRB, NULL);
     watch_writes(REG_PORTB, NULL);
