@@ -1,8 +1,8 @@
 /*
  * Runs on the ATmega328P (simavr): the parts of the HAL that the firmware does not use yet, each answered with a line
  * on the UART. Reads EEPROM byte 1023, writes its complement, waits for the write by sleeping, reads it back; sets the
- * alarm and says how late main woke, also where it had passed already; clocks the bus by hand and says how long it
- * took; then sleeps with interrupts off.
+ * alarm and says how late main woke, also where it had passed already; fills the transmit ring; clocks the bus by hand
+ * three times and says how long it took; then sleeps with interrupts off.
  */
 #include <avr/interrupt.h>
 #include <avr/sleep.h>
@@ -16,7 +16,7 @@
 #include "hal_watchdog.h"
 #include "machine.h"
 
-enum { LAST_BYTE = 1023 };
+enum { LAST_BYTE = 1023, CLEARS = 3 };
 
 static void say(flash_text_t words, uint8_t value)
 {
@@ -57,13 +57,35 @@ static void say_passed(uint16_t ago_us)
     say(FLASH_TEXT("slept"), slept_us > UINT8_MAX ? UINT8_MAX : (uint8_t)slept_us);
 }
 
-/* What the bus is after the clocks by hand, and how long they took, in units of 4 us. */
+/* What the bus is after the clocks by hand, and how long they took, in units of 2 us: no byte is sent meanwhile. */
 static void say_clear(void)
 {
+    while (!hal_uart_tx_idle()) {
+    }
     uint32_t begun_us = hal_time_us();
     uint8_t lines = hal_i2c_clear();
-    say(FLASH_TEXT("clear"), (uint8_t)((hal_time_us() - begun_us) / 4u));
+    say(FLASH_TEXT("clear"), (uint8_t)((hal_time_us() - begun_us) / 2u));
     say(FLASH_TEXT("lines"), lines);
+}
+
+/* Whether a line that is a byte too long for the room is taken (2), and one that fills it (1); bytes discarded are not sent. */
+static void say_room(void)
+{
+    static char spaces[UINT8_MAX];
+    for (uint8_t i = 0; i < UINT8_MAX; i++) {
+        spaces[i] = ' ';
+    }
+    while (!hal_uart_tx_idle()) {
+    }
+    hal_uart_tx_stage('x');
+    hal_uart_tx_discard();
+    hal_uart_tx_stage(' ');
+    uint8_t room = hal_uart_tx_room();
+    bool longer = hal_uart_tx_write(spaces, (uint8_t)(room + 1u));
+    bool whole = hal_uart_tx_write(spaces, room);
+    while (!hal_uart_tx_idle()) {
+    }
+    say(FLASH_TEXT("room"), (uint8_t)(2u * longer + whole));
 }
 
 static const uint16_t passed_us[] IN_FLASH = { 0, 100, 900 };
@@ -91,7 +113,10 @@ int main(void)
     for (uint8_t i = 0; i < sizeof passed_us / sizeof passed_us[0]; i++) {
         say_passed(flash_u16(&passed_us[i]));
     }
-    say_clear();
+    say_room();
+    for (uint8_t i = 0; i < CLEARS; i++) {
+        say_clear();
+    }
     while (!hal_uart_tx_idle()) {
         hal_sleep_until_wake();
     }

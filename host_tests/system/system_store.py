@@ -18,7 +18,7 @@ def eeprom_is_written_on_the_chip_and_kept_in_the_file():
     image = OUT / "eeprom.bin"
     image.write_bytes(bytes([0xFF] * 1023 + [0x5A]))
     done = run(SIMRUN, "--fw", "build/uno/hal_probe.elf", "--in", STREAMS / "tilt-fast.csv", "--out", OUT / "eeprom.txt", "--eeprom", image,
-               "--fault", "pc:hal_i2c_clear#1:sda:2", "--max-ms", "1000", expect=None)
+               "--fault", "pc:hal_i2c_clear#1:sda:2", "--fault", "pc:hal_i2c_clear#2:scl:2", "--max-ms", "1000", expect=None)
     assert done.returncode == 8, done.stderr
     lines = [line.split() for line in (OUT / "eeprom.txt").read_text().splitlines()]
     said = dict(lines)
@@ -27,9 +27,14 @@ def eeprom_is_written_on_the_chip_and_kept_in_the_file():
     assert image.read_bytes() == bytes([0xFF] * 1023 + [0xA5])
     late_us = [int(value, 2) for name, value in lines if name == "late"]
     assert len(late_us) == 7 and max(late_us) <= 20, f"main wakes {late_us} us after its alarm"
+    assert said["room"] == "00000001", "the ring takes a line that fills it and none that is longer"
     slept_us = [int(value, 2) for name, value in lines if name == "slept"]
-    clear_us = 4 * int(said["clear"], 2)
-    assert said["lines"] == "00000010" and 244 <= clear_us <= 300, f"16 clocks of three steps of 5 us, SDA low, took {clear_us} us"
+    # SDA low: 16 clocks of three steps of 5 us, each with its instructions; SCL low: a look without a clock; a free bus: one clock
+    clears = [(line, 2 * int(us, 2)) for (_, us), (_, line) in zip(lines[-6::2], lines[-5::2])]
+    look_us = clears[1][1]
+    assert [line for line, _ in clears] == ["00000010", "00000001", "00000000"] and look_us <= 12, clears
+    for (_, took_us), clocks in zip(clears, (16, 0, 1)):
+        assert 15 * clocks - 2 <= took_us - look_us <= 16.5 * clocks + 2, (clears, clocks)
     assert len(slept_us) == 3 and max(slept_us) <= 40, f"main sleeps {slept_us} us although its alarm has passed"
 
 
