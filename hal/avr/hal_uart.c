@@ -152,9 +152,8 @@ void hal_uart_init(uint32_t baud)
     /* simulators compute the byte time when UBRR0L is written, so write it last */
     UCSR0A = _BV(U2X0);
     UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);
-    uint16_t divider = (uint16_t)((uint16_t)(F_CPU / 4 / baud - 1) / 2); /* F_CPU / 8 / baud, rounded, minus one */
-    UBRR0H = (uint8_t)(divider >> 8);
-    UBRR0L = (uint8_t)divider;
+    UBRR0H = 0;
+    UBRR0L = (uint8_t)((uint16_t)(F_CPU / 4 / baud - 1) / 2); /* F_CPU / 8 / baud, rounded, minus one */
     UCSR0B = _BV(TXEN0) | _BV(RXEN0) | _BV(RXCIE0);
 }
 
