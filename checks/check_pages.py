@@ -20,7 +20,7 @@ PRODUCT = ("lib", "firmware", "hal", "nav", "sim", "host_tests")
 PAGES = ("docs", "second", "web", "wokwi", "tools", "checks", "campaigns", "mk")
 # what writes a page, draws it, launches a program or says what is wrong with it makes no number
 NO_NUMBER = {"page_sources.py", "results.py", "pictures.py", "page_benchmarks.py", "page_faults.py", "robust_pictures.py", "look.py", "launched.py",
-             "port.py", "errors.py", "unity_line.py"}
+             "port.py", "errors.py", "unity_line.py", "unity_report.py", "page_mutants.py"}
 NIGHT = pathlib.Path("docs/results/nightly.md")  # of make nightly: a commit in each row
 RESULTS = pathlib.Path("docs/results")
 PYTHONPATH = pathlib.Path("mk/pythonpath")

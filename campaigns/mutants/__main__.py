@@ -1,6 +1,6 @@
 """Mutants by operators: each is one small change of the product that some test must notice.
 
-    make mutants                    all (hours; goes on where it stopped)
+    make mutants                    all (hours; goes on where it stopped), into docs/results/mutants.md
     make mutants ONLY=lib/tilt      those of a folder in goals.txt, or of files whose path begins so
     make mutants SAMPLE=25          so many of the folders in goals.txt, drawn by the tree's hash: fails on a survivor that is not accepted where
                                     all are known, else when their goal is missed
@@ -15,15 +15,19 @@ import subprocess
 import sys
 import time
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path += [str(ROOT / folder) for folder in (ROOT / "mk/pythonpath").read_text(encoding="ascii").split()]
+import page_mutants  # noqa: E402
+import page_sources  # noqa: E402
 from chip import ONLY_CHIP, Chip
 from host import Host, Settings
 from judge import Judge, Worker
 from nav import Link, Variants
 from operators import mutants_of
 from order import Cheapest, Listed, Reached, write_judges
-from results import (Results, accepted, below_goal, folder_of, goals, may_survive, measured, missed_by_sample, sampled, table, write_accepted,
-                     write_goals, write_json)
 from shop import Stop, alone, copy_tree, digest, tree_files
+from verdicts import (Results, accepted, below_goal, folder_of, goals, may_survive, measured, missed_by_sample, sampled, table, write_accepted,
+                      write_goals, write_json)
 
 WORKERS = 2
 # files that no mutant is made of, each with its reason
@@ -104,12 +108,18 @@ def head_tree():
 
 
 def chosen(mutants, known, options):
-    """All, in an order drawn by lot so that a campaign cut short is a fair sample; or a sample of those that a test is known to notice."""
+    """All, in an order drawn by lot so that a campaign cut short is a fair sample, the navigation filter's last; by a digest, so that it is the
+    same for each choice of files and after each change. Or a sample of those that a test is known to notice."""
     if not options.sample:
-        return random.Random(0).sample(mutants, len(mutants))
+        return sorted(mutants, key=lambda mutant: (mutant.file.startswith(NAV), digest("0", mutant.key)))
     seed, noticed = options.seed or head_tree(), [m for m in mutants if m.key not in known]
     say(f"{options.sample} of {len(noticed)} in {', '.join(sorted({folder_of(m.file) for m in mutants}))}, drawn by {seed}")
     return random.Random(seed).sample(noticed, min(options.sample, len(noticed)))
+
+
+def has_page(options):
+    """A campaign over all of the product by all tests, whole or cut short."""
+    return not (options.only or options.sample or options.patience)
 
 
 class Campaign:
@@ -121,6 +131,8 @@ class Campaign:
         every = [m for name, text in self.texts.items() for m in mutants_of(name, text)]
         self.shares = may_survive(every, self.accepted)
         self.mutants = chosen(every, self.accepted, options)
+        if has_page(options):
+            self.sources, self.equal = page_sources.hash_now(page_mutants.DOCUMENT), page_mutants.reasons({m.key for m in every})
         self.whole = whole_folders(self.texts)
         made_of = [n for n in tree_files() if n.endswith((".c", ".h", ".cpp", ".hpp", ".py", ".mk", "Makefile"))]
         self.results = Results(digest(options.patience, *(pathlib.Path(n).read_bytes() for n in made_of)))
@@ -182,6 +194,11 @@ class Campaign:
                 raise
         return rows
 
+    def write_page(self, rows):
+        if has_page(self.options):
+            page_mutants.write(page_mutants.tables(self.mutants, rows, folder_of, self.equal), self.sources)
+            say(f"{page_mutants.DOCUMENT} written")
+
     def report(self, rows):
         survived = [row["key"] for row in rows if row["verdict"] == "survived"]
         killed = [row["key"] for row in rows if row["verdict"] == "killed"]
@@ -220,8 +237,10 @@ def main():
         options = options_of(sys.argv[1:])
         with alone():
             campaign = Campaign(options)
-            return campaign.report(campaign.run())
-    except Stop as why:
+            rows = campaign.run()
+            campaign.write_page(rows)
+            return campaign.report(rows)
+    except (Stop, page_sources.Fault) as why:
         print(f"mutants: {why}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:

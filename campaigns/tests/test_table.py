@@ -45,7 +45,7 @@ def packages(name, *targets):
 SCRIPTS = [
     plain("test_flash", "flashtest_images"), packages("test_flash_words"), plain("test_resets", "system_images", "flashtest_images"),
     plain("test_fault_page"), plain("test_limits"), plain("test_bench", "system_images"), plain("test_bench_parts", "system_images"),
-    plain("test_layout", "system_images"), plain("test_mutants"), plain("test_progress"),
+    plain("test_layout", "system_images"), plain("test_mutants"), plain("test_mutants_page"), plain("test_progress"),
     plain("test_papers", "paper_programs"), plain("test_papers_synthesis", "paper_programs"), plain("test_papers_verdicts", "paper_programs"),
     packages("test_figures", "paper_programs"), packages("test_comparison", "paper_programs"), plain("test_schedule"),
     plain("test_pages"), plain("test_page_sources"), plain("test_steps"), plain("test_make_words"), plain("test_proved"),

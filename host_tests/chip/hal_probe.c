@@ -68,7 +68,10 @@ static void say_clear(void)
     say(FLASH_TEXT("lines"), lines);
 }
 
-/* Whether a line that is a byte too long for the room is taken (2), and one that fills it (1); bytes discarded are not sent. */
+/*
+ * Whether a line that is a byte too long for the room is taken (2), and one that fills it (1); bytes discarded are not
+ * sent.
+ */
 static void say_room(void)
 {
     static char spaces[UINT8_MAX];

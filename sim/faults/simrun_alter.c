@@ -37,8 +37,8 @@ static bool has_kept;
 static int16_t kept[AXES];
 static uint64_t pulse_at = NEVER; /* the next pulse on INT1, or its end */
 static uint64_t glitch_cycles = PULSE_CYCLES;
-static uint64_t pulse_period;     /* 0: one pulse */
-static bool mixing;               /* the master reads data of the previous burst, until the end of this one */
+static uint64_t pulse_period; /* 0: one pulse */
+static bool mixing;           /* the master reads data of the previous burst, until the end of this one */
 static uint8_t data_before[DATA_BYTES];
 static size_t clipped_axis = NO_AXIS;
 static bool in_pulse;

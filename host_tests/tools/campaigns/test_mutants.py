@@ -293,7 +293,7 @@ def a_sample_of_a_folder_that_has_changed_is_held_to_its_goal():
 @test
 def a_sample_is_drawn_from_folders_with_a_goal_or_as_they_were_measured_and_accepted_survivors_leave_less_room():
     """Of 20 mutants 10 may survive where the goal is 50 %: 6 are accepted, so 4 of the other 14; or all ten and more, so none."""
-    from results import may_survive, sampled
+    from verdicts import may_survive, sampled
     pathlib.Path("campaigns/mutants/goals.txt").write_text("lib/a 50 -\nlib/b 0 80.0 1a2b\nlib/c 0 80.0 1a2b\nlib/d 0 -\n", encoding="utf-8")
     assert sampled({"lib/a": "x", "lib/b": "1a2b", "lib/c": "2", "lib/d": "y"}) == ["lib/a", "lib/b"]
     twenty = [types.SimpleNamespace(file="lib/a/a.c", key=f"m{n}") for n in range(20)]
@@ -314,7 +314,7 @@ def a_folder_of_the_goals_is_that_one_alone_and_other_words_begin_a_path():
 
 @test
 def what_is_known_holds_while_its_judge_is_the_same_and_not_for_a_sample():
-    from results import ROOT, Results
+    from verdicts import ROOT, Results
     (ROOT / "results.jsonl").unlink(missing_ok=True)
     killed, survived, *_ = mutants()
     results = Results("all")
