@@ -20,16 +20,17 @@
 static double limited_mean(double limit)
 {
     const int steps = 20000;
+    double width = sqrt(limit) / steps;
     double sum = 0.0;
     for (int i = 0; i < steps; i++) {
-        double t = limit * (i + 0.5) / steps;
-        double tail = erfc(sqrt(t / 2.0));
-        sum += tail * tail;
+        double u = width * (i + 0.5); /* u^2 = t: smooth at 0 too */
+        double tail = erfc(u * sqrt(0.5));
+        sum += 2.0 * u * tail * tail;
     }
-    return sum * limit / steps;
+    return sum * width;
 }
 
-/* w = E min(m, c w) by iteration; the constants in noise.c are 65536 / 6w for c = 3 and 4.5. */
+/* w = E min(m, c w) by iteration; the constants in noise.c are the whole numbers nearest to 65536 / 6w for c = 3, 4.5. */
 static double unbias(double c)
 {
     double w = 0.3;
@@ -39,11 +40,30 @@ static double unbias(double c)
     return 65536.0 / (6.0 * w);
 }
 
+/* The mean, Q16, from this one, after so many terms and one more of two second differences of 32 LSB. */
+static double mean_after(uint8_t terms, uint32_t mean_lsb2_q16)
+{
+    static const int16_t bends_of_32[] = { 0, 0, 32, 0, 0, 32 };
+    noise_t n;
+    filter_noise_init(&n, 690, false);
+    for (int i = 0; i < 6; i++) {
+        n.terms = terms;
+        n.mean_lsb2_q16 = mean_lsb2_q16;
+        (void)filter_noise_update(&n, bends_of_32[i]);
+    }
+    return n.mean_lsb2_q16;
+}
+
+/*
+ * Half a unit of a constant is 512 in a term of 32^2, of which the mean takes the share of its window, rounded. The
+ * opening has 64 terms.
+ */
 TEST(constants_solve_their_equation)
 {
-    TEST_ASSERT_DOUBLE_WITHIN(2e-5, 1.0 - 2.0 / 3.14159265358979, limited_mean(40.0));
-    TEST_ASSERT_DOUBLE_WITHIN(4.0, 40913.0, unbias(3.0));
-    TEST_ASSERT_DOUBLE_WITHIN(4.0, 33719.0, unbias(4.5));
+    const double mean = 3e7;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 1.0 - 2.0 / 3.14159265358979, limited_mean(40.0));
+    TEST_ASSERT_DOUBLE_WITHIN(512 / 32 + 1, mean + (1024 * unbias(4.5) - mean) / 32, mean_after(63, (uint32_t)mean));
+    TEST_ASSERT_DOUBLE_WITHIN(512 / 64 + 1, mean + (1024 * unbias(3.0) - mean) / 64, mean_after(64, (uint32_t)mean));
 }
 
 static double estimate(uint16_t rate_dhz, double sigma, double outliers, int samples, double amplitude, uint64_t seed)

@@ -49,6 +49,18 @@ TEST(begin_is_limited_to_the_formats)
     TEST_ASSERT_EQUAL_HEX32(WIDE_P_END, core.own.wide.p.p22);
 }
 
+/* R is 1 LSB^2, Q8: the variance of one sample, until there is a P. */
+TEST(variance_is_that_of_a_sample_until_the_filter_runs)
+{
+    filter_probe_t probe;
+    core.own.wide.p.p11 = ONE_UQ16 / 2;
+    filter_probe(&core, &probe);
+    TEST_ASSERT_EQUAL_UINT32(256, probe.p_lsb2_q8);
+    wide_from(&core, 0, 0, (filter_covariance_t){ ONE_UQ16 / 2, 0, 0 });
+    filter_probe(&core, &probe);
+    TEST_ASSERT_EQUAL_UINT32(128, probe.p_lsb2_q8);
+}
+
 /* P = (1, 1/2; 1/2, 1/4): P12' = 3/4, P11' = 1 + 1/2 + 3/4, P22' = 1/4 + q22; x' = 10 + 3. */
 TEST(prediction_by_hand)
 {

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/choice.h"
 #include "base/number.h"
 #include "filter_list.h"
 #include "settings/settings.h"
@@ -111,7 +112,7 @@ static unsigned assert_ends(const setting_t *s, const char *about)
 TEST(test_each_number_is_taken_to_its_ends_and_no_further)
 {
     unsigned refused = 0;
-    for (kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+    for (kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++) {
         shipped();
         for (uint8_t which = 0; which < settings_count(); which++) {
             setting_t s;
@@ -134,6 +135,26 @@ static bool is_member(const setting_t *s, uint32_t value)
         found = found || setting_choice(s, i) == value;
     }
     return found;
+}
+
+/* The first parameter of each filter, one more than shipped: every other filter begins as shipped. */
+TEST(test_parameters_of_the_user_are_those_of_the_chosen_filter_alone)
+{
+    static filter_t as_begun, as_shipped; /* all bytes 0 */
+    for (uint8_t chosen = 0; chosen < (uint8_t)FILTER_KIND_COUNT; chosen++) {
+        filter_config_t config = filter_defaults(filter_listed((filter_kind_t)chosen), 1000);
+        filter_choice_t choice = { .parameters = { (uint32_t)config.value[0] + 1u }, .own = 1u, .filter = chosen };
+        for (kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++) {
+            config = filter_defaults(filter_listed((filter_kind_t)kind), 1000);
+            if (kind == chosen) {
+                config.value[0]++;
+            }
+            choice_begin(&choice, &as_begun, (filter_kind_t)kind, 1000);
+            TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED,
+                                    filter_init(&as_shipped, filter_listed((filter_kind_t)kind), &config));
+            TEST_ASSERT_EQUAL_MEMORY(&as_shipped, &as_begun, sizeof as_begun);
+        }
+    }
 }
 
 TEST(test_each_list_takes_its_members_alone)

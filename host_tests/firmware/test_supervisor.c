@@ -158,6 +158,20 @@ TEST(test_another_filter_leaves_none_out)
     TEST_ASSERT_TRUE(during.worst_deg > 20.0);
 }
 
+/* An axis that is left out is believed again by the filter that comes after. */
+TEST(test_a_change_of_the_filter_leaves_none_out)
+{
+    stream_t stream = rolling_stream(2, AT_ZERO);
+    board_start(&stream, 0.0, 0);
+    board_run_ms(100);
+    (void)talk_typed("filter auto", 12000.0);
+    TEST_ASSERT_EQUAL_UINT(100, judge(1050.0, 1150.0).left_out);
+    (void)talk_typed(by_role("filter {plain}"), 4000.0);
+    judged_t after = judge(1300.0, 1500.0);
+    TEST_ASSERT_EQUAL_UINT(200, after.rows);
+    TEST_ASSERT_EQUAL_UINT(0, after.left_out);
+}
+
 /* Of two bad axes none can be made up. */
 TEST(test_two_bad_axes_are_too_many)
 {

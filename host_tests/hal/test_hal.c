@@ -1,6 +1,7 @@
 /* The parts of the HAL contracts that are logic: time over its wrap, reset cause, sleep, EEPROM timing, receive ring */
 #include "hal_eeprom.h"
 #include "hal_host.h"
+#include "hal_i2c.h"
 #include "hal_sleep.h"
 #include "hal_time.h"
 #include "hal_uart.h"
@@ -151,4 +152,35 @@ TEST(test_receive_ring_counts_what_it_loses)
     }
     TEST_ASSERT_EQUAL(63, received);
     TEST_ASSERT_EQUAL_UINT8(37, hal_uart_rx_lost());
+}
+
+/* What hal/host takes from the same headers, so no other test on the PC sees it: tables 26-3 and 26-4, 11.9.1, 8.4. */
+TEST(numbers_of_the_chip_are_those_of_its_data_sheet)
+{
+    static const struct {
+        unsigned number, of_data_sheet;
+    } rows[] = { { HAL_I2C_BUS_ERROR, 0x00 },
+                 { HAL_I2C_STARTED, 0x08 },
+                 { HAL_I2C_RESTARTED, 0x10 },
+                 { HAL_I2C_WRITE_ADDRESS_ACK, 0x18 },
+                 { HAL_I2C_WRITE_ADDRESS_NACK, 0x20 },
+                 { HAL_I2C_SENT_ACK, 0x28 },
+                 { HAL_I2C_SENT_NACK, 0x30 },
+                 { HAL_I2C_ARBITRATION_LOST, 0x38 },
+                 { HAL_I2C_READ_ADDRESS_ACK, 0x40 },
+                 { HAL_I2C_READ_ADDRESS_NACK, 0x48 },
+                 { HAL_I2C_RECEIVED_ACK, 0x50 },
+                 { HAL_I2C_RECEIVED_NACK, 0x58 },
+                 { HAL_I2C_NOTHING, 0xF8 },
+                 { HAL_MCUSR_POWER_ON, 1u << 0 },
+                 { HAL_MCUSR_EXTERNAL, 1u << 1 },
+                 { HAL_MCUSR_BROWN_OUT, 1u << 2 },
+                 { HAL_MCUSR_WATCHDOG, 1u << 3 },
+                 { HAL_EEPROM_SIZE, 1024 },
+                 { 4000000 / HAL_I2C_100_KHZ, 100000 },
+                 { 4000000 / HAL_I2C_400_KHZ, 400000 },
+                 { 4000000 / HAL_I2C_364_KHZ, 363636 } };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        TEST_ASSERT_EQUAL_HEX32(rows[i].of_data_sheet, rows[i].number);
+    }
 }

@@ -117,9 +117,11 @@ TEST(test_the_rails_of_other_sensors)
         uint8_t bits;
         uint16_t lsb_per_g;
         int16_t highest, inside;
-    } sensors[] = {
-        { 10, 256, 511, 510 }, { 13, 256, 4095, 4094 }, { 16, 2048, 32767, 32700 }, { 16, 16384, 32767, 32600 }
-    };
+    } sensors[] = { { 10, 256, 511, 510 },
+                    { 13, 256, 4095, 4094 },
+                    { 13, 330, 4095, 4094 },
+                    { 16, 2048, 32767, 32700 },
+                    { 16, 16384, 32767, 32600 } };
     for (size_t i = 0; i < sizeof sensors / sizeof sensors[0]; i++) {
         uint16_t lsb_per_g = sensors[i].lsb_per_g;
         TEST_ASSERT_TRUE(tilt_filter_sensor(&tilt, sensors[i].bits, lsb_per_g, lsb_per_g));
