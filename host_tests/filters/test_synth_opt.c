@@ -68,6 +68,21 @@ TEST(coast_extrapolates_with_the_limit_of_a1)
     TEST_ASSERT_EQUAL_INT32(2 * x, coast(&f));
 }
 
+/* R is 6.25 LSB^2, three sigmas 7.5 LSB: a rate of 7 may be noise, and neither it nor the one before it moves U's x. */
+TEST(gap_stops_a_rate_that_may_be_noise_with_a1_too)
+{
+    filter_t f = made_opt(1, 25600, 1600);
+    filter_reset(&f, 0);
+    for (int16_t k = 1; k <= 400; k++) {
+        (void)filter_update(&f, (int16_t)(7 * k));
+    }
+    filter_tracker_fade(&f, true);
+    int32_t x = probe_of(&f).x_lsb_q16;
+    for (uint8_t k = 0; k < 3; k++) {
+        TEST_ASSERT_EQUAL_INT32(x, coast_only(&f));
+    }
+}
+
 /* The border between 4^i and 4^(i + 1) is 2 x 4^i; below 1 and above 1024 the last class goes on. */
 TEST(class_is_the_nearest_ratio)
 {
