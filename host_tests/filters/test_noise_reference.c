@@ -30,7 +30,7 @@ static double limited_mean(double limit)
     return sum * width;
 }
 
-/* w = E min(m, c w) by iteration; the constants in noise.c are the whole numbers nearest to 65536 / 6w for c = 3, 4.5. */
+/* w = E min(m, c w) by iteration; the constants in noise.c are 65536 / 6w for c = 3 and 4.5, rounded. */
 static double unbias(double c)
 {
     double w = 0.3;
