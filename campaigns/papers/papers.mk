@@ -8,11 +8,11 @@ PAPER_SEED ?= 2024
 
 $(P)/%.o: %.cpp Makefile campaigns/papers/papers.mk
 	@mkdir -p $(@D)
-	@$(HOST_CXX) -std=c++17 -O2 -fPIC -g -Wall -Wextra -Wconversion -Wshadow -Werror -Ihost_tests -Inav/tests -Ilib/machine/src -Ilib/filters/src -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
+	@$(HOST_CXX) -std=c++17 -O3 -fPIC -fno-semantic-interposition -DEIGEN_NO_DEBUG -g -Wall -Wextra -Wconversion -Wshadow -Werror -Ihost_tests -Inav/tests -Ilib/machine/src -Ilib/filters/src -isystem /usr/include/eigen3 -MMD -MP -c $< -o $@
 
 $(P)/%.o: %.c Makefile campaigns/papers/papers.mk
 	@mkdir -p $(@D)
-	@$(HOST_CC) $(HOST_FLAGS) -O2 -fPIC $(WARNINGS) -MMD -MP -c $< -o $@
+	@$(HOST_CC) $(HOST_FLAGS) -O3 -fPIC -fno-semantic-interposition $(WARNINGS) -MMD -MP -c $< -o $@
 
 # papers 000, 001 and 002 are in Python (campaigns/synthesis, campaigns/resilience) over this
 BATCH := $(P)/libbatch.so

@@ -1,5 +1,6 @@
 """Every filter of paper 002: the double references and the shipped fixed-point code, as handles of host_tests/papers/contest.cpp."""
 import ctypes
+import functools
 from ctypes import c_char_p, c_double, c_int, c_uint64, c_void_p
 from typing import NamedTuple
 
@@ -145,6 +146,7 @@ def at_rest(name, noise=()):
     return p, gain, r, variance
 
 
+@functools.cache
 def steady_sigma_deg(name):
     """Standard deviation of the filter's error in the steady state by its own P: "back" means within four of them."""
     return float(np.sqrt(at_rest(LINEAR if name.startswith(LINEAR) else PLAIN)[0][0]))
@@ -164,12 +166,12 @@ def handles(filters):
 def scored(filters, scenario, seeds):
     """(square errors, filters x windows (steady, transient, transient late) x runs; runs in which each is locked out; variance of the error at each
     sample within each whole experiment of GROUP runs, experiments x filters x samples)"""
-    squares, locked, variances = np.empty((len(filters), 3, len(seeds))), np.zeros(len(filters)), []
+    squares, locked, variances, back = np.empty((len(filters), 3, len(seeds))), np.zeros(len(filters)), [], back_deg(filters)
     for begin in range(0, len(seeds), GROUP):
         part = np.ascontiguousarray(seeds[begin:begin + GROUP])
         found, errors = np.empty((len(filters), 3, len(part))), np.empty((len(filters), len(part), SAMPLES))
-        c().contest_score(*handles(filters), ctypes.byref(scenario), pointer(part), len(part), pointer(back_deg(filters)), pointer(found),
-                          pointer(locked), pointer(errors))
+        c().contest_score(*handles(filters), ctypes.byref(scenario), pointer(part), len(part), pointer(back), pointer(found), pointer(locked),
+                          pointer(errors))
         squares[:, :, begin:begin + GROUP] = found
         variances += [errors.var(axis=1)] if len(part) == GROUP else []
     variances = np.array(variances)
