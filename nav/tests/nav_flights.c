@@ -172,11 +172,30 @@ static void note(nav_second_t *second, flown_t *f, double t)
     v->variances(&f->memory, second->variance);
 }
 
+/* Kept for the next plan with the same seed and drift: making them takes longer than flying. */
+static const flight_sample_t *samples_of(const nav_plan_t *plan)
+{
+    static flight_sample_t sample[FLIGHT_SECONDS * FLIGHT_RATE];
+    static const flight_drift_t *drift;
+    static uint32_t seed;
+    static test_random_t random;
+    static int made;
+    if (plan->drift != drift || plan->seed != seed) {
+        drift = plan->drift;
+        seed = plan->seed;
+        random_seed(&random, seed);
+        made = 0;
+    }
+    for (; made < plan->seconds * FLIGHT_RATE; made++) {
+        flight_sample(&sample[made], made, drift, &random);
+    }
+    return sample;
+}
+
 void nav_fly(nav_flight_t *flight, const nav_plan_t *plan)
 {
     static flown_t f;
-    test_random_t random;
-    random_seed(&random, plan->seed);
+    const flight_sample_t *sample = samples_of(plan);
     memset(flight, 0, sizeof *flight);
     f.plan = plan;
     nav_flight_setting(&f.setting, plan->walk_scale);
@@ -186,9 +205,7 @@ void nav_fly(nav_flight_t *flight, const nav_plan_t *plan)
     plan->variant->tau(f.tau, f.setting.field);
     flight->least_d = INFINITY;
     for (int k = 0; k < plan->seconds * FLIGHT_RATE; k++) {
-        flight_sample_t sample;
-        flight_sample(&sample, k, plan->drift, &random);
-        slot(&f, k, &sample, flight);
+        slot(&f, k, &sample[k], flight);
         flight->least_d = fmin(flight->least_d, plan->variant->least_d(&f.memory));
         if (k % FLIGHT_RATE == plan->note_at) {
             note(&flight->second[k / FLIGHT_RATE], &f, (k + 1) * FLIGHT_STEP);
