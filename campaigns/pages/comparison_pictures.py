@@ -69,9 +69,11 @@ def draw_classes(figure, lost):
     axes.barh(range(len(groups)), ratios, color=["#0b5394" if ratio <= 1.0 else "#d1495b" for ratio in ratios], height=0.6)
     for number, (group, ratio) in enumerate(zip(groups, ratios)):
         name = words(lost[group][0]).strip("`")
-        axes.annotate(f"{ratio:.2f}, best other: {name}", (ratio, number), xytext=(4, 0), textcoords="offset points", va="center", fontsize=8)
+        # behind the line at 1, too
+        axes.annotate(f"{ratio:.2f}, best other: {name}", (max(ratio, 1.0), number), xytext=(4, 0), textcoords="offset points", va="center", fontsize=8)
     axes.axvline(1.0, lw=0.8, color=TRUTH_COLOUR)
     axes.set_yticks(range(len(groups)), groups)
     axes.set_ylim(len(groups) - 0.5, -0.5)
     axes.set_xlim(0.0, 1.5 * max(ratios))
+    axes.set_axisbelow(True)
     plain(axes, f"rms error of {DEFAULT} by that of the best other, ratio", "class")

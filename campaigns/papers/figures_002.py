@@ -14,8 +14,8 @@ RECURSIVE = list(ENTRIES)[list(ENTRIES).index(GRID_OF_Q1) - 1]
 NAMES = {PLAIN: PLAIN.upper(), MERGED: MERGED.upper(), GRID_OF_Q1: RECURSIVE.upper(), SHORT: "Sh" + SHORT[2:].upper(), GATED: "SpRF",
          LINEAR: LINEAR.upper()}
 COLOUR = dict(zip(NAMES, (ORANGE, BLUE, PINK, VIOLET, BROWN, GREEN)))
-# Table 2: accuracy gain, transient and steady; of the grid, which is about 30 there, within a tenth
-GAINS = {MERGED: ((20, 85), (30, 40)), GRID_OF_Q1: ((30, 60), (27, 33)), SHORT: ((20, 80), (20, 30)), GATED: ((15, 20), (12, 15)),
+# Table 2: accuracy gain, transient and steady; of the grid, which is about 30 there, within half a unit of its one digit, as papers_verdict.py
+GAINS = {MERGED: ((20, 85), (30, 40)), GRID_OF_Q1: ((30, 60), (25, 35)), SHORT: ((20, 80), (20, 30)), GATED: ((15, 20), (12, 15)),
          LINEAR: ((0.8, 2.5), (0.3, 0.5))}
 ANGLE, TIME, VARIANCE = "elevation in degrees", "time in seconds", "variance of the error in degree$^2$"
 
@@ -205,7 +205,9 @@ def draw_gain(axes, name, band):
     if name == GATED:
         axes.semilogy(times[1:], band[FIRST_CLEAN][1][1:], ":", lw=1.3, color=COLOUR[name], label=FIRST_CLEAN)
     for (begin, end), (least, most) in zip((TRANSIENT, STEADY), GAINS[name]):
-        printed_range(axes, [times[begin], times[end]], least, most, said(name, begin < 100), begin < 100)
+        # above these two there is a curve
+        above = begin < 100 and name not in (GATED, LINEAR)
+        printed_range(axes, [times[begin], times[end]], least, most, said(name, begin < 100), above)
     axes.axhline(1.0, lw=0.7, color="#555555")
     axes.set_ylim(0.03, 2000.0)
     panel(axes, NAMES[name], TIME, "K$_{ef}$, variance ratio")

@@ -39,6 +39,7 @@ class Drawn:
 def panel(axes, title, x, y):
     """Labels with units, a title on the left."""
     plain(axes, x, y)
+    axes.set_axisbelow(True)
     axes.set_title(title, fontsize=9, loc="left", pad=4)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
