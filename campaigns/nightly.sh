@@ -49,6 +49,7 @@ counted coverage
 counted fuzz SECONDS=600
 step bench
 step papers
+step papers PAPER_SEED=2025
 step figures
 step default
 step comparison
