@@ -34,6 +34,14 @@ def realisations(seed, first, runs, samples, scenario=None):
     return truth, y, outlier
 
 
+def joint(name, y, limit):
+    """Estimates of a gated filter that comes back, components x runs x samples as y: one gate over all components."""
+    y, x = np.ascontiguousarray(y), np.empty(y.shape)
+    if library().trace_joint(name.encode(), c_double(limit), REACQUIRE, c_double(RATE_MAX_DEG_S), *y.shape, pointer(y), pointer(x)):
+        raise Refused(f"{name}: reference/robust.h has no such filter")
+    return x
+
+
 def reference(name, y, outlier, gate_sigma=2.0, reacquire=False, stay=0.0, density=False):
     """{x, p11, abnormal, q_mean: runs x samples, and density: samples x GRID of the first run, where it is asked for}"""
     facts = np.empty((4, *y.shape))

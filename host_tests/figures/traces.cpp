@@ -3,6 +3,9 @@
 #include "papers/model.hpp"
 #include "reference/robust.h"
 
+#include <cstddef>
+#include <vector>
+
 namespace
 {
 struct Facts {
@@ -11,6 +14,15 @@ struct Facts {
     double *abnormal; // posterior probability that the sample is an outlier
     double *q_mean;   // of q1, before the sample
 };
+
+// As the library re-acquires, or with 0 never.
+void come_back(robust_reference_t &f, int reacquire, double rate_max)
+{
+    f.reacquire = reacquire;
+    f.rate_max = rate_max;
+    f.agree = 3.0 * 0.11313708498984761 + rate_max * papers::period_s; // 3 sqrt(2 R)
+    f.doubts = reacquire != 0;
+}
 } // namespace
 
 extern "C" {
@@ -28,6 +40,37 @@ void trace_realisations(const papers::Scenario *scenario, const std::uint64_t *s
     }
 }
 
+// A gated filter with Table 1 and the library's re-acquisition for each of several components, under one gate: its
+// limit on the sum of their squares in sigmas; y, x: components x runs x samples. Not 0: refused.
+int trace_joint(const char *name, double limit, int reacquire, double rate_max, int components, int runs, int samples,
+                const double *y, double *x)
+{
+    std::vector<robust_reference_t> initial(static_cast<std::size_t>(components));
+    for (robust_reference_t &f : initial) {
+        if (!robust_reference_table1(&f, name)) {
+            return 1;
+        }
+        come_back(f, reacquire, rate_max);
+    }
+    std::vector<double> now(initial.size());
+    std::vector<double> estimate(initial.size());
+    for (int run = 0; run < runs; run++) {
+        std::vector<robust_reference_t> f = initial;
+        for (int k = 0; k < samples; k++) {
+            const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(run) * samples + k;
+            const std::ptrdiff_t apart = static_cast<std::ptrdiff_t>(runs) * samples;
+            for (int i = 0; i < components; i++) {
+                now[static_cast<std::size_t>(i)] = y[i * apart + at];
+            }
+            robust_reference_step_joint(f.data(), components, now.data(), limit, estimate.data());
+            for (int i = 0; i < components; i++) {
+                x[i * apart + at] = estimate[static_cast<std::size_t>(i)];
+            }
+        }
+    }
+    return 0;
+}
+
 // A filter of reference/robust.h with Table 1, each run from its beginning; reacquire and rate_max as the library has
 // them, or 0 as published. facts: x, P11, probability of an outlier, mean of q1, each runs x samples. density: what the
 // grid thinks of q1 after each sample of the first run, samples x ROBUST_GRID, or NULL. Not 0: refused.
@@ -39,10 +82,7 @@ int trace_reference(const char *name, double gate_sigma, int reacquire, double r
         return 1;
     }
     initial.gate_sigma = gate_sigma;
-    initial.reacquire = reacquire;
-    initial.rate_max = rate_max;
-    initial.agree = 3.0 * 0.11313708498984761 + rate_max * papers::period_s; // 3 sqrt(2 R)
-    initial.doubts = reacquire != 0;
+    come_back(initial, reacquire, rate_max);
     initial.stay = stay;
     if (robust_reference_refused(&initial) != nullptr) {
         return 1;

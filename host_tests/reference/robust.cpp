@@ -222,10 +222,15 @@ void doubt_rate(robust_reference_t &f, Estimate &e)
     }
 }
 
+bool near_the_last(const robust_reference_t &f, double z)
+{
+    return std::abs(z - f.previous) <= f.agree;
+}
+
 // Consistency re-acquisition: so many refused raw samples in a row, each near the one before, restart on their slope.
 bool reacquired(robust_reference_t &f, double z)
 {
-    const bool agrees = f.run > 0 && std::abs(z - f.previous) <= f.agree;
+    const bool agrees = f.run > 0 && (f.joint ? f.joint_agrees : near_the_last(f, z));
     f.run = agrees ? f.run + 1 : 1;
     if (!agrees) {
         f.first = z;
@@ -245,6 +250,9 @@ bool reacquired(robust_reference_t &f, double z)
 bool within_gate(const robust_reference_t &f, const Estimate &e)
 {
     const double xi1 = xi(f, e.p, 1.0);
+    if (f.joint) {
+        return f.joint_taken;
+    }
     if (f.reading == ROBUST_PRINTED_33) {
         return std::abs(f.innovation) <= f.gate_sigma * xi1;
     }
@@ -384,6 +392,24 @@ double robust_reference_step(robust_reference_t *f, double z)
     limit_rate(*f);
     f->previous = z;
     return (f->reading == ROBUST_PRINTED_21) ? f->p_normal * f->x[0] + (1.0 - f->p_normal) * f->second_x[0] : f->x[0];
+}
+
+void robust_reference_step_joint(robust_reference_t *f, int count, const double *z, double limit, double *x)
+{
+    double distance = 0.0;
+    bool agrees = true;
+    for (int i = 0; i < count; i++) {
+        const Estimate e = predicted(f[i], held(f[i]));
+        const double r = z[i] - observed(e.s);
+        distance += r * r / xi(f[i], e.p, 1.0);
+        agrees = agrees && near_the_last(f[i], z[i]);
+    }
+    for (int i = 0; i < count; i++) {
+        f[i].joint = true;
+        f[i].joint_taken = distance <= limit;
+        f[i].joint_agrees = agrees;
+        x[i] = robust_reference_step(&f[i], z[i]);
+    }
 }
 
 void robust_reference_steady(const robust_reference_t *f, double *p, double *gain_at_rest)
