@@ -18,7 +18,7 @@ try:
 except ImportError as missing:
     sys.exit(f"comparison: {missing.name} is missing: run make comparison, which installs it")
 import laws
-from comparison_filters import FUSION, NAMES, OURS, compared, words
+from comparison_filters import FUSION, NAMES, OF_PAPER, OURS, compared, words
 from default_score import CANDIDATE, geometric_mean
 from laws import PLAIN
 from papers_program import whole_number
@@ -41,6 +41,9 @@ OF_CLASSES = """\
 Root mean square error in LSB (256 per g): the table that decides the [default](default-filter.md), whose streams, faults and reference it has. The
 first column is the geometric mean over the classes of the error by the default's. Fusion gives a direction, here times 1 g: forces beside gravity
 are its error too."""
+OF_RECORDED = """\
+What paper 002 has and the library has not, or not by default, in double: one decision for all axes, and outliers expected in runs. LSB as above, of
+the real recordings alone. On the paper's scenario: [paper 002](papers-002.md)."""
 OF_SCENARIO = """\
 K_ef, mean square error of the Kalman filter that is told Table 1's noise over that of the filter, samples 201 to 400; more is better. The
 Kalman filters among ours and the peers are told Table 1's noise; the others, and the default, are not, and have their defaults for 40.5 Hz. Runs:
@@ -64,7 +67,7 @@ def number(value):
 def class_table(classes):
     fusion = [FUSION] if FUSION in classes["rest"] else []
     best = {min(set(laws.names()) & set(found), key=found.get): None for found in classes.values()}
-    order = [*OURS, *(name for name in best if name not in OURS), *NAMES[len(OURS):], *fusion, "raw"]
+    order = [*OURS, *(name for name in best if name not in OURS), *NAMES[len(OURS):], *OF_PAPER, *fusion, "raw"]
     lines = []
     for name in order:
         values = [found[name] for found in classes.values()]
@@ -72,6 +75,12 @@ def class_table(classes):
         lines.append([words(name), f"{ratio:.2f}", *map(number, values)])
     return table("Classes of motion and faults", OF_CLASSES,
                  ["filter", f"by `{CANDIDATE}`", *classes], lines)
+
+
+def recorded_table(recorded):
+    names = [name for pair in OF_PAPER.items() for name in reversed(pair)]
+    return table("Paper 002's equation (11) and one gate over all axes, on recordings", OF_RECORDED, ["filter", *recorded],
+                 [[words(name), *(number(found[name]) for found in recorded.values())] for name in names])
 
 
 def lost_of(classes):
@@ -114,8 +123,9 @@ def cost_table(chip):
                  [[words(name), row["median"], row["worst"], row["flash"], row["ram"]] for name, row in chip.items()])
 
 
-def json_rows(classes, gains, tilts, lags, chip):
-    rows = [{"part": "class", "what": group, "filter": name, "value": value} for group, found in classes.items() for name, value in found.items()]
+def json_rows(classes, recorded, gains, tilts, lags, chip):
+    rows = [{"part": part, "what": group, "filter": name, "value": value} for part, of in (("class", classes), ("recordings", recorded))
+            for group, found in of.items() for name, value in found.items()]
     rows += [{"part": "k_ef", "what": scenario, "filter": name, "value": value} for scenario, found in gains.items() for name, value in found.items()]
     rows += [{"part": "tilt", "what": f"{tilt}, {metric}", "filter": name, "value": value} for tilt, found in tilts.items()
              for name, pair in found.items() for metric, value in zip(("rms", "largest"), pair)]
@@ -139,11 +149,11 @@ def main():
     options = options_of()
     gains, tilts = made.k_ef(options.runs), made.among_outliers(max(2, options.runs // 20))
     lags, chip = made.lags(max(2, options.runs // 30)), comparison_chip.measure(options.flags.split(), options.sources.split(), options.peers)
-    classes, recordings = comparison_classes.measured()
-    JSON.write_text(json.dumps(json_rows(classes, gains, tilts, lags, chip), indent=0) + "\n", encoding="ascii")
+    classes, recordings, recorded = comparison_classes.measured()
+    JSON.write_text(json.dumps(json_rows(classes, recorded, gains, tilts, lags, chip), indent=0) + "\n", encoding="ascii")
     lost = lost_of(classes)
     shown = comparison_pictures.contents(lost)
-    lines = [*pictures.on_page(shown), *class_table(classes), *lost_table(lost), *tilt_table(tilts), *scenario_table(gains), *lag_table(lags),
+    lines = [*pictures.on_page(shown), *class_table(classes), *lost_table(lost), *recorded_table(recorded), *tilt_table(tilts), *scenario_table(gains), *lag_table(lags),
              *cost_table(chip)]
     missing = [*([] if FUSION in compared() else [f"no Fusion in {options.peers}"]), *([] if recordings else ["no recordings in build/default.json"])]
     if missing or options.runs != PAGE_RUNS:

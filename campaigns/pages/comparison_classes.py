@@ -7,7 +7,7 @@ import pathlib
 import default_filter
 import default_score as score
 import default_streams as streams
-from comparison_filters import FUSION, NAMES
+from comparison_filters import FUSION, NAMES, OF_PAPER
 from results import Fault, output_of
 
 JSON = pathlib.Path("build/default.json")
@@ -26,7 +26,7 @@ class FewSeeds(streams.Job):
 
 
 def of_json():
-    """{class: {filter: LSB}} and whether the recordings are in it."""
+    """{class: {filter: LSB}}, whether the recordings are in it, and the same of the recordings alone for what is of the paper."""
     try:
         rows = json.loads(JSON.read_text(encoding="ascii"))
     except (OSError, ValueError) as problem:
@@ -35,10 +35,20 @@ def of_json():
     for row in rows:
         if row["level"] == "class":
             found.setdefault(row["class"], {})[row["filter"]] = row["rmse_lsb"]
-    missing = [name for name in NAMES if any(name not in scores for scores in found.values())]
+    missing = [name for name in (*NAMES, *OF_PAPER) if any(name not in scores for scores in found.values())]
     if missing or not found:
         raise Fault(f"{JSON}: has no {', '.join(missing) or 'class'}: make default writes it anew")
-    return found, rows[0]["recordings"]
+    return found, rows[0]["recordings"], of_recordings(rows)
+
+
+def of_recordings(rows):
+    """{class: {filter: LSB}}: mean over the rates of the mean over their recordings of ln(RMSE), as score.log_score."""
+    rates = {}
+    for row in rows:
+        if row["level"] == "stream" and not row["made"] and row["class"] in streams.CLASSES:
+            of_filter = rates.setdefault(row["class"], {}).setdefault(row["filter"], {})
+            of_filter.setdefault(row["rate_hz"], []).append(max(row["rmse_lsb_5Hz"], score.LEAST_LSB))
+    return {group: {name: score.geometric_mean(map(score.geometric_mean, found[name].values())) for name in found} for group, found in rates.items()}
 
 
 def of_fusion(recordings):
@@ -54,8 +64,8 @@ def of_fusion(recordings):
 
 
 def measured():
-    """({class: {filter: LSB}} with Fusion where it is built, whether the recordings are in it)"""
-    found, recordings = of_json()
+    """({class: {filter: LSB}} with Fusion where it is built, whether the recordings are in it, the recordings alone)"""
+    found, recordings, recorded = of_json()
     for group, value in of_fusion(recordings).items():
         found[group][FUSION] = value
-    return found, recordings
+    return found, recordings, recorded

@@ -12,10 +12,7 @@
  * over all samples, then over those within half a second after a bad read. The first second is never counted.
  * Status 2: a job cannot be read, one sentence says which.
  */
-#include "support/faults.h"
 #include "support/outliers.h"
-#include "support/peers.h"
-#include "support/robust_axis.h"
 #include "support/shipped.h"
 #include "support/smooth.h"
 
@@ -29,18 +26,12 @@
 #else
 #include "comparison/fusion_none.h"
 #endif
+#include "comparison/runner.h"
 
 /* References: truth, or smoothed at these cuts, the first of which decides; behind them the own run without faults. */
 static const double cut_hz[] = { 5.0, 2.5, 10.0 };
 enum { SMOOTHED = sizeof cut_hz / sizeof cut_hz[0], OWN = SMOOTHED, REFERENCES };
 
-/* Behind the contenders of support/faults.h: the peers, one that does nothing, and a library that is not ours. */
-#define ROBUST (CONTENDERS + (size_t)PEERS)
-#define RAW (ROBUST + (size_t)ROBUST_PEERS)
-#define FUSION (RAW + 1U)
-#define ALL (RAW + 1U + FUSIONS)
-
-static const double lsb_per_g[] = { 265.0, 265.0, 256.0 }; /* of the streams */
 static const double bad_for_s = 0.5;
 
 typedef struct {
@@ -55,15 +46,6 @@ typedef struct {
     double *reference[SMOOTHED][3]; /* by row of the divided stream */
     double *own[ALL][3];            /* what each makes of it */
 } bench_t;
-
-/* One contender on one axis. */
-typedef struct {
-    size_t contender;
-    chain_t chain;
-    peer_t peer;
-    robust_axis_t robust;
-    fusion_t fusion;
-} runner_t;
 
 typedef struct {
     size_t count;
@@ -119,49 +101,6 @@ static bool references(bench_t *bench, const stream_t *whole)
 
 static char *const *only; /* names of the contenders that are asked for; NULL: all */
 
-static bool runner_begin(runner_t *runner, const job_t *job, size_t contender, int axis)
-{
-    runner->contender = contender;
-    fusion_begin(&runner->fusion, (float)job->rate_dhz / 10.0f);
-    if (contender < CONTENDERS) {
-        return contender_begin(&runner->chain, contender, (uint16_t)job->rate_dhz, (uint8_t)job->range_g, axis);
-    }
-    if (contender < ROBUST) {
-        peer_begin(&runner->peer, (peer_kind_t)(contender - CONTENDERS), job->rate_dhz / 10.0);
-    } else if (contender < RAW) {
-        robust_axis_begin(&runner->robust, (robust_kind_t)(contender - ROBUST), (uint16_t)job->rate_dhz, axis);
-    }
-    return true;
-}
-
-static double runner_lsb(runner_t *runner, const stream_row_t *row, int axis)
-{
-    if (runner->contender == RAW) {
-        return row->lsb[axis];
-    }
-    if (runner->contender == FUSION) {
-        return fusion_gravity(&runner->fusion, row->lsb, axis) * lsb_per_g[axis];
-    }
-    if (runner->contender >= ROBUST) {
-        return robust_axis_sample(&runner->robust, row->lsb[axis]);
-    }
-    if (runner->contender >= CONTENDERS) {
-        return peer_sample(&runner->peer, row->lsb[axis]);
-    }
-    return chain_sample(&runner->chain, row->t_us, row->lsb[axis]) / 65536.0;
-}
-
-static const char *runner_name(size_t contender)
-{
-    if (contender >= RAW) {
-        return contender == RAW ? "raw" : "fusion";
-    }
-    if (contender >= ROBUST) {
-        return robust_peer_name((robust_kind_t)(contender - ROBUST));
-    }
-    return contender < CONTENDERS ? contender_name(contender) : peer_name((peer_kind_t)(contender - CONTENDERS));
-}
-
 static bool wanted(size_t contender)
 {
     for (char *const *name = only; name != NULL && *name != NULL; name++) {
@@ -172,13 +111,18 @@ static bool wanted(size_t contender)
     return only == NULL || *only == NULL;
 }
 
+static bool begin(runner_t *runner, const job_t *job, size_t contender, int axis)
+{
+    return runner_begin(runner, contender, (uint16_t)job->rate_dhz, (uint8_t)job->range_g, axis);
+}
+
 static bool own_run(bench_t *bench, size_t contender, int axis)
 {
     const stream_t *clean = &bench->divided.stream;
     runner_t runner;
     double *own_lsb = malloc(clean->count * sizeof *own_lsb);
     bench->own[contender][axis] = own_lsb;
-    if (own_lsb == NULL || !runner_begin(&runner, &bench->job, contender, axis)) {
+    if (own_lsb == NULL || !begin(&runner, &bench->job, contender, axis)) {
         return false;
     }
     for (size_t i = 0; i < clean->count; i++) {
@@ -212,7 +156,7 @@ static void one_axis(const bench_t *bench, const faulty_t *faulty, size_t conten
 {
     const stream_t *clean = &bench->divided.stream;
     runner_t runner;
-    (void)runner_begin(&runner, &bench->job, contender, axis); /* own_run did it before, so it cannot be refused here */
+    (void)begin(&runner, &bench->job, contender, axis); /* own_run did it before, so it cannot be refused here */
     double bad_until_s = -1.0;
     for (size_t i = 0; i < faulty->stream.count; i++) {
         const stream_row_t *row = &faulty->stream.rows[i];
