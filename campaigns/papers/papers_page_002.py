@@ -67,8 +67,16 @@ def tables(rows):
         (f"{words}: {title}", experiment, [metric]) for words, experiment in (("independent", "independent"), ("in runs", "in_runs"))
         for title, metric in (("pooled, steady", "k_ef_steady"), ("K_ef(k), median of k = 201..400", "k_ef_pointwise_steady_median"))],
         intervals=True)
+    yield "Three axes: one gate over all against a gate for each, (eq11) beside: pooled K_ef, and a burst of ten", grid(
+        [row for row in rows if row["experiment"].startswith("three_axes")],
+        [(f"outliers {words}", f"three_axes_{experiment}", ["k_ef_steady"]) for words, experiment in (
+            ("on each axis by itself", "apart"), ("on all at once", "together"), ("by itself, in runs", "apart_in_runs"),
+            ("at once, in runs", "together_in_runs"))] +
+        [(f"burst on {words}: peak error in steady sigmas, median / 95 %", f"three_axes_burst_on_{which}",
+          ["peak_error_sigma_median", "peak_error_sigma_p95"]) for words, which in (("one", "one"), ("all", "all"))], intervals=True)
     yield "What is learnt of q1 = 0.85", grid(rows, [("mean after 50 samples", "learning", ["q1_after_50"]), (
-        "after 400", "learning", ["q1_after_400"]), ("samples until the mean stays within 5 %", "learning", ["q1_samples_to_5_percent"])])
+        "after 400", "learning", ["q1_after_400"]), ("samples until the mean stays within 5 %", "learning", ["q1_mean_within_5_percent"]),
+        ("until a run does: the middle one [5 %, 95 % of the runs]", "learning", ["q1_run_within_5_percent"])], intervals=True)
     yield "Steady K_ef of fixed point by that of double, same runs", grid(starting(rows), [
         (title, experiment, ["k_ef_steady_by_double"]) for title, experiment in (
             ("Start of Table 1", "table1_start"), ("first sample no outlier", "first_sample_clean"), ("median of five", "median_start"),
@@ -77,8 +85,8 @@ def tables(rows):
         ("steady", "printed", ["k_ef_steady"]), ("k = 1..60", "printed", ["k_ef_pooled_1_60"]),
         ("steady, first sample no outlier", "printed_first_sample_clean", ["k_ef_steady"]),
         ("k = 1..60, first sample no outlier", "printed_first_sample_clean", ["k_ef_pooled_1_60"])], intervals=True)
-    yield "Without outliers: the Kalman filter's mean square error over the filter's", grid(
-        rows, [("efficiency", "clean", ["clean_efficiency"])], intervals=True)
+    yield "Without outliers: the Kalman filter's mean square error over the filter's", grid(rows, [
+        ("pooled", "clean", ["clean_efficiency"]), ("K_ef(k), median of k = 201..400", "clean", ["k_ef_pointwise_steady_median"])], intervals=True)
     yield "Width of the gate in sigma: false alarms / misses (first sample no outlier)", grid(
         [r for r in rows if r["filter"] == ROBUST], [(g, f"gate_{g}_sigma", ["false_alarm", "miss"]) for g in GATES])
     yield "Width of the gate in sigma: K_ef", grid(rows, [(g, f"gate_{g}_sigma", ["k_ef_steady"]) for g in GATES])

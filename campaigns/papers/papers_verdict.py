@@ -4,7 +4,7 @@ What a paper prints, and how it is to be taken, stands in two columns of host_te
 rule_of() makes the rule that the results pages show, with its numbers:
 
     takes                rule shown              the number is judged by
-    (empty)              20 to 85                the printed range, or a printed number with its tolerance
+    (empty)              20 to 85                the printed range, or a printed number within half a unit of its last digit
     own numbers          own: 1.05 to 1.07       the same, of a number that the paper's own numbers give without chance
     <= BOUND, >= BOUND   <= 0.82                 a claim in words, as a limit
     order <= BOUND       order: <= 0.82          a claim that one choice is better than another
@@ -20,19 +20,30 @@ FAR = 10.0  # times beyond what is printed: refuted
 TAKES = re.compile(r"(?:|own numbers|other things|(order )?(<=|>=) (.+))$")
 SHOWN = re.compile(r"(?:(own): )?(\S+) to (\S+)$|(?:(order): )?(<=|>=) (\S+)$")
 NUMBER = r"(-?\d+(?:\.\d+)?)"
-FORMS = ((rf"{NUMBER}-(\d+(?:\.\d+)?)$", lambda low, high: (low, high)), (rf"~{NUMBER}$", lambda x: (0.9 * x, 1.1 * x)),
-         (rf"~{NUMBER}-(\d+)$", lambda low, high: (0.9 * low, 1.1 * high)),
-         (rf"{NUMBER} \+-(\d+(?:\.\d+)?) %$", lambda x, part: (x - abs(x) * part / 100, x + abs(x) * part / 100)),
-         (rf"{NUMBER} \+-(\d+(?:\.\d+)?)$", lambda x, width: (x - width, x + width)),
-         (rf"< {NUMBER}$", lambda x: (-math.inf, x)), (r"(\d+)$", lambda x: (x, x)))
+
+
+def about(low, high=None):
+    """Half a unit of the last digit to either side; zeros at the end of a whole number are no digits: 30 is 25 to 35."""
+    def half(text):
+        whole, _, decimals = text.partition(".")
+        return 0.5 * 10.0 ** (-len(decimals) or len(whole) - len(whole.rstrip("0") or whole))
+    high = high or low
+    return float(low) - half(low), float(high) + half(high)
+
+
+FORMS = ((rf"{NUMBER}-(\d+(?:\.\d+)?)$", lambda low, high: (float(low), float(high))), (rf"~{NUMBER}(?:-(\d+(?:\.\d+)?))?$", about),
+         (rf"{NUMBER} \+-(\d+(?:\.\d+)?)$", lambda x, width: (float(x) - float(width), float(x) + float(width))),
+         (rf"< {NUMBER}$", lambda x: (-math.inf, float(x))), (r"(-?\d+\.\d+)$", about), (r"(\d+) degrees?$", lambda x: (float(x) - 0.5, float(x) + 0.5)),
+         (r"(\d+)$", lambda x: (float(x), float(x))))
 
 
 def published_range(text):
-    """(low, high) of "30-40", "~30" and "~60-80" (10 % to either side), "0.0867 +-5 %", "0 +-0.05", "< 2" and a whole number; None for words."""
+    """(low, high) of "30-40", "~30", "~60-80" and "0.37" (half a unit of the last digit to either side), "6 degrees" (likewise), "0 +-0.05", "< 2",
+    and a count, exactly; None for words."""
     for pattern, limits in FORMS:
         found = re.match(pattern, text)
         if found:
-            return limits(*map(float, found.groups()))
+            return limits(*found.groups())
     return None
 
 
@@ -44,7 +55,7 @@ def rule_of(published, takes, bound):
     if limit[2]:
         return f"{'order: ' if limit[1] else ''}{limit[2]} {bound(limit[3]):.6g}"
     low, high = published_range(published)
-    return f"<= {high:.6g}" if low == -math.inf else f"{'own: ' if takes == OWN else ''}{low:.6g} to {high:.6g}"
+    return f"<= {high:.6g}" if low == -math.inf else f"{'own: ' if takes == OWN else ''}{low:.8g} to {high:.8g}"
 
 
 def limits_of(rule):

@@ -119,11 +119,17 @@ def readings(options):
             yield reading, name, "double", "lag_noise_free", errors[DOWN - 1], 1
 
 
+def printed_ratio(above, below):
+    """Of two numbers as printed; the interval is what rounding to their digits leaves open."""
+    (a, a_half), (b, b_half) = ((float(text), 0.5 * 10.0 ** -len(text.partition(".")[2])) for text in (above, below))
+    return Interval(a / b, (a - a_half) / (b + b_half), (a + a_half) / (b - b_half))
+
+
 def ratios(_options):
     """Of what the paper prints: the first Kalman filter's lag by its own filter's, its own sigma by the first one's, the second one's by its own."""
-    for metric, value in (("lag_kf1_by_own", KF1_LAG_M / LAG_M), ("sigma_own_by_kf1", SIGMA_OWN_M / KF1_SIGMA_M),
-                          ("sigma_kf2_by_own", KF2_SIGMA_M / SIGMA_OWN_M)):
-        yield "ratios", "printed", "double", metric, value, 1
+    for metric, above, below in (("lag_kf1_by_own", KF1_LAG_M, LAG_M), ("sigma_own_by_kf1", SIGMA_OWN_M, KF1_SIGMA_M),
+                                 ("sigma_kf2_by_own", KF2_SIGMA_M, SIGMA_OWN_M)):
+        yield "ratios", "printed", "double", metric, printed_ratio(f"{above}", f"{below}"), 1
 
 
 # --- every filter of FILTER_LIST on the same altitude

@@ -334,9 +334,10 @@ void contest_score(Filter *const *filters, int count, const Scenario *scenario, 
     }
 }
 
-// Mean over the runs of q1 as a filter has it after each sample: filters x samples.
+// Mean over the runs of q1 as a filter has it after each sample: filters x samples; within: after how many samples it
+// stays within a part of the truth, filters x runs.
 void contest_shares(Filter *const *filters, int count, const Scenario *scenario, const std::uint64_t *seeds, int runs,
-                    double *mean)
+                    double part, double *mean, double *within)
 {
     for (int run = 0; run < runs; run++) {
         papers::Realisation realisation(*scenario, seeds[run]);
@@ -344,7 +345,11 @@ void contest_shares(Filter *const *filters, int count, const Scenario *scenario,
             filters[i]->restart();
             for (int k = 0; k < papers::samples; k++) {
                 (void)filters[i]->step(realisation.at(k).y);
-                mean[i * papers::samples + k] += filters[i]->share() / runs;
+                const double share = filters[i]->share();
+                mean[i * papers::samples + k] += share / runs;
+                if (std::abs(share - papers::clean) > part * papers::clean) {
+                    within[i * runs + run] = k + 2;
+                }
             }
         }
     }

@@ -113,10 +113,13 @@ print(*(by_hand(0, k) / by_hand(2, k) / (variances[0, 0, k] / variances[0, 2, k]
 
 
 @test
-def the_share_of_outliers_is_learnt_fast():
+def a_run_learns_the_share_of_outliers_as_a_mean_does():
+    """A mean of k such decisions is off by 0.357 |W(1 / k)|, W a Brownian motion (time reversed); sup |W| over [0, 1 / k] is above 0.0425 / 0.357 in
+    half of the runs where 0.119 sqrt(k) = 1.149: k = 93. What is not decided for certain makes it more."""
     rows = rows_of("002", "learning")
     for name in (LEARNING, f"{LEARNING}_grid"):
-        within(10, value(rows, "learning", name, "double", "q1_samples_to_5_percent"), 60, name)
+        within(80, value(rows, "learning", name, "double", "q1_run_within_5_percent"), 130, name)
+        within(10, value(rows, "learning", name, "double", "q1_mean_within_5_percent"), 60, f"{name}, mean")
         within(0.83, value(rows, "learning", name, "double", "q1_after_400"), 0.86, name)
 
 

@@ -44,11 +44,13 @@ def verdicts_follow_from_number_interval_and_rule():
 
 @test
 def rules_are_what_is_printed():
-    for text, limits in (("~30", (27, 33)), ("~60-80", (54, 88)), ("2-2.5", (2, 2.5)), ("< 2", (-INFINITE, 2)), ("0.1 +-5 %", (0.095, 0.105)),
-                         ("0 +-0.05", (-0.05, 0.05)), ("16", (16, 16))):
+    for text, limits in (("~30", (25, 35)), ("~60-80", (55, 85)), ("~0.09", (0.085, 0.095)), ("~102", (101.5, 102.5)), ("2-2.5", (2, 2.5)),
+                         ("< 2", (-INFINITE, 2)), ("0.1", (0.05, 0.15)), ("0.10", (0.095, 0.105)), ("-3.5", (-3.55, -3.45)),
+                         ("6 degrees", (5.5, 6.5)), ("0 +-0.05", (-0.05, 0.05)), ("16", (16, 16))):
         assert all(abs(a - b) < 1e-12 or a == b for a, b in zip(published_range(text), limits)), text
-    assert published_range("< two") is None and published_range("best") is None
-    for printed, takes, shown in (("30-40", "", "30 to 40"), ("< 2", "", "<= 2"), ("1.06 +-1 %", "own numbers", "own: 1.0494 to 1.0706"),
+    # a tolerance in per cent is nothing that a paper's digits say
+    assert all(published_range(text) is None for text in ("< two", "best", "0.1 +-5 %"))
+    for printed, takes, shown in (("30-40", "", "30 to 40"), ("< 2", "", "<= 2"), ("1.06", "own numbers", "own: 1.055 to 1.065"),
                                   ("best", "order >= 1 x g", "order: >= 7"), ("best", "<= 1 x g", "<= 7"), ("47", "other things", "other things")):
         assert rule_of(printed, takes, lambda text: 7.0) == shown, (printed, takes)
 
