@@ -70,12 +70,13 @@ endif
 $(H)/native_replay: $(H)/o2/host_tests/system/native_replay.o
 $(H)/recordings $(H)/default_filter: $(H)/%: $(H)/o2/host_tests/tools/campaigns/%.o
 OPTIMISED := $(addprefix $(H)/,native_replay recordings default_filter)
-# one contender is paper 002's reference, in C++
-$(H)/default_filter: $(H)/o2/host_tests/reference/robust.o
+# two contenders are paper 002's references, in C++
+PAPER_AXES_O2 := $(addprefix $(H)/o2/host_tests/reference/,robust.o robust_joint.o)
+$(H)/default_filter: $(PAPER_AXES_O2)
 $(OPTIMISED): $(ARCHIVES_O2)
 	@$(HOST_CXX) $(call linked,$^) -lm -o $@
 
-$(H)/o2/host_tests/reference/%.o: host_tests/reference/%.cpp host_tests/reference/%.h host_tests/reference/matrices.hpp Makefile mk/host.mk
+$(H)/o2/host_tests/reference/%.o: host_tests/reference/%.cpp host_tests/reference/robust.h host_tests/reference/robust_joint.h host_tests/reference/matrices.hpp Makefile mk/host.mk
 	@mkdir -p $(@D)
 	@$(HOST_CXX) -std=c++17 -O2 -DEIGEN_NO_DEBUG -Wall -Wextra -Wconversion -Wshadow -Werror -Ihost_tests -isystem /usr/include/eigen3 -c $< -o $@
 

@@ -153,8 +153,8 @@ def main():
     JSON.write_text(json.dumps(json_rows(classes, recorded, gains, tilts, lags, chip), indent=0) + "\n", encoding="ascii")
     lost = lost_of(classes)
     shown = comparison_pictures.contents(lost)
-    lines = [*pictures.on_page(shown), *class_table(classes), *lost_table(lost), *recorded_table(recorded), *tilt_table(tilts), *scenario_table(gains), *lag_table(lags),
-             *cost_table(chip)]
+    lines = [*pictures.on_page(shown), *class_table(classes), *lost_table(lost), *recorded_table(recorded), *tilt_table(tilts),
+             *scenario_table(gains), *lag_table(lags), *cost_table(chip)]
     missing = [*([] if FUSION in compared() else [f"no Fusion in {options.peers}"]), *([] if recordings else ["no recordings in build/default.json"])]
     if missing or options.runs != PAGE_RUNS:
         print("\n".join(lines))

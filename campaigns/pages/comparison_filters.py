@@ -23,7 +23,8 @@ OF_PAPER = {"one_gate": RETURNING[0], "eq11": MERGED}                     # of p
 WORDS = {"ema": "EMA, 4 Hz", "median3_ema": "median of 3 + EMA", "median5_ema": "median of 5 + EMA", "hampel7_ema": "Hampel of 7 + EMA",
          "one_euro": "1-euro", "huber": "Huber Kalman filter", "student_t": "Student's t Kalman filter",
          "correntropy": "maximum correntropy Kalman filter",
-         "one_gate": "one gate over three axes", "eq11": "mixture by (11)", "imm3": "IMM of three", FUSION: "Fusion, accelerometer alone", "raw": "no filter"}
+         "one_gate": "one gate over three axes", "eq11": "mixture by (11)", "imm3": "IMM of three",
+         FUSION: "Fusion, accelerometer alone", "raw": "no filter"}
 START_LSB_S = 200.0  # of the rate, as kalman.c
 FLOOR_LSB2 = 1.5 * 0.02  # R of the data sheet by the rate in Hz, as noise.c
 NOISE = 1.5              # and how many times the variance the estimator gives

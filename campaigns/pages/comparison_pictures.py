@@ -70,7 +70,8 @@ def draw_classes(figure, lost):
     for number, (group, ratio) in enumerate(zip(groups, ratios)):
         name = words(lost[group][0]).strip("`")
         # behind the line at 1, too
-        axes.annotate(f"{ratio:.2f}, best other: {name}", (max(ratio, 1.0), number), xytext=(4, 0), textcoords="offset points", va="center", fontsize=8)
+        axes.annotate(f"{ratio:.2f}, best other: {name}", (max(ratio, 1.0), number), xytext=(4, 0), textcoords="offset points",
+                      va="center", fontsize=8)
     axes.axvline(1.0, lw=0.8, color=TRUTH_COLOUR)
     axes.set_yticks(range(len(groups)), groups)
     axes.set_ylim(len(groups) - 0.5, -0.5)

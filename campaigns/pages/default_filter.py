@@ -274,7 +274,8 @@ def json_rows(t, real):
         best = t.classes[group][t.best(group)]
         rows += [{"level": "class", "class": group, "filter": name, "rmse_lsb": value, "times_best": value / best} for name, value in filters.items()]
     for cell in t.cells:
-        rows += [{"level": "stream", "class": cell.group, "stream": cell.name, "rate_hz": cell.rate_hz, "made": cell.made, "filter": name, "values": sums.count,
+        rows += [{"level": "stream", "class": cell.group, "stream": cell.name, "rate_hz": cell.rate_hz, "made": cell.made, "filter": name,
+                  "values": sums.count,
                   **{f"rmse_lsb_{reference}".replace(" ", ""): sums.rmse(i) for i, reference in enumerate(score.REFERENCES)}}
                  for name, sums in cell.sums.items()]
     return rows

@@ -22,19 +22,21 @@ SHOWN = re.compile(r"(?:(own): )?(\S+) to (\S+)$|(?:(order): )?(<=|>=) (\S+)$")
 NUMBER = r"(-?\d+(?:\.\d+)?)"
 
 
+def half(text):
+    """A unit of the last digit, halved; zeros at the end of a whole number are none: of 30 it is 5."""
+    whole, _, decimals = text.partition(".")
+    return 0.5 * 10.0 ** (-len(decimals) or len(whole) - len(whole.rstrip("0") or whole))
+
+
 def about(low, high=None):
-    """Half a unit of the last digit to either side; zeros at the end of a whole number are no digits: 30 is 25 to 35."""
-    def half(text):
-        whole, _, decimals = text.partition(".")
-        return 0.5 * 10.0 ** (-len(decimals) or len(whole) - len(whole.rstrip("0") or whole))
     high = high or low
     return float(low) - half(low), float(high) + half(high)
 
 
 FORMS = ((rf"{NUMBER}-(\d+(?:\.\d+)?)$", lambda low, high: (float(low), float(high))), (rf"~{NUMBER}(?:-(\d+(?:\.\d+)?))?$", about),
          (rf"{NUMBER} \+-(\d+(?:\.\d+)?)$", lambda x, width: (float(x) - float(width), float(x) + float(width))),
-         (rf"< {NUMBER}$", lambda x: (-math.inf, float(x))), (r"(-?\d+\.\d+)$", about), (r"(\d+) degrees?$", lambda x: (float(x) - 0.5, float(x) + 0.5)),
-         (r"(\d+)$", lambda x: (float(x), float(x))))
+         (rf"< {NUMBER}$", lambda x: (-math.inf, float(x))), (r"(-?\d+\.\d+)$", about),
+         (r"(\d+) degrees?$", lambda x: (float(x) - 0.5, float(x) + 0.5)), (r"(\d+)$", lambda x: (float(x), float(x))))
 
 
 def published_range(text):

@@ -180,8 +180,8 @@ def scored(filters, scenario, seeds):
 
 
 def shares(filters, scenario, seeds, part):
-    """(mean over the runs of q1 as each has it after each sample, filters x samples; from which sample on it stays within a part of the truth, filters
-    x runs)"""
+    """(mean over the runs of q1 as each has it after each sample, filters x samples; from which sample on it stays within a part of the truth,
+    filters x runs)"""
     mean, within = np.zeros((len(filters), SAMPLES)), np.ones((len(filters), len(seeds)))
     c().contest_shares(*handles(filters), ctypes.byref(scenario), pointer(seeds), len(seeds), c_double(part), pointer(mean), pointer(within))
     return mean, within

@@ -1,7 +1,7 @@
 // What the figures of paper 002 and the comparison with other people's filters ask of C: realisations sample by sample,
 // and every sample of a filter in double. A plain C interface for ctypes; arrays are runs x samples.
 #include "papers/model.hpp"
-#include "reference/robust.h"
+#include "reference/robust_joint.h"
 
 #include <cstddef>
 #include <vector>

@@ -77,8 +77,8 @@ TEST(test_as_shipped_they_are_the_shipped_laws)
 }
 
 /*
- * 2.3 sigma on each of three axes are within a gate of 3 sigma each, but 3 x 2.3^2 = 15.9 is beyond 14.156. 3.5 sigma on
- * one are beyond its gate, but 12.3 is not; 3.8 sigma are 14.4.
+ * 2.3 sigma on each of three axes are within a gate of 3 sigma each, but 3 x 2.3^2 = 15.9 is beyond 14.156. 3.5 sigma
+ * on one are beyond its gate, but 12.3 is not; 3.8 sigma are 14.4.
  */
 TEST(test_one_gate_decides_by_the_sum)
 {

@@ -222,15 +222,10 @@ void doubt_rate(robust_reference_t &f, Estimate &e)
     }
 }
 
-bool near_the_last(const robust_reference_t &f, double z)
-{
-    return std::abs(z - f.previous) <= f.agree;
-}
-
 // Consistency re-acquisition: so many refused raw samples in a row, each near the one before, restart on their slope.
 bool reacquired(robust_reference_t &f, double z)
 {
-    const bool agrees = f.run > 0 && (f.joint ? f.joint_agrees : near_the_last(f, z));
+    const bool agrees = f.run > 0 && (f.joint ? f.joint_agrees : std::abs(z - f.previous) <= f.agree);
     f.run = agrees ? f.run + 1 : 1;
     if (!agrees) {
         f.first = z;
@@ -392,24 +387,6 @@ double robust_reference_step(robust_reference_t *f, double z)
     limit_rate(*f);
     f->previous = z;
     return (f->reading == ROBUST_PRINTED_21) ? f->p_normal * f->x[0] + (1.0 - f->p_normal) * f->second_x[0] : f->x[0];
-}
-
-void robust_reference_step_joint(robust_reference_t *f, int count, const double *z, double limit, double *x)
-{
-    double distance = 0.0;
-    bool agrees = true;
-    for (int i = 0; i < count; i++) {
-        const Estimate e = predicted(f[i], held(f[i]));
-        const double r = z[i] - observed(e.s);
-        distance += r * r / xi(f[i], e.p, 1.0);
-        agrees = agrees && near_the_last(f[i], z[i]);
-    }
-    for (int i = 0; i < count; i++) {
-        f[i].joint = true;
-        f[i].joint_taken = distance <= limit;
-        f[i].joint_agrees = agrees;
-        x[i] = robust_reference_step(&f[i], z[i]);
-    }
 }
 
 void robust_reference_steady(const robust_reference_t *f, double *p, double *gain_at_rest)

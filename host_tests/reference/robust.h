@@ -48,7 +48,7 @@ typedef struct {
     double agree;          /* they differ from one to the next by at most this */
     bool doubts;           /* as the library: half of the rate is left by a refused sample where P11 >= R */
     double rate_max;       /* of the estimate; 0: no limit */
-    bool joint;            /* the gate decides for several components: what it decided of this sample stands below */
+    bool joint;            /* the gate decides for several components: robust_joint.h */
     int median_window;     /* odd: the estimate starts as the median of so many samples; 0: from x and p as given */
     double p22_start;      /* of the rate, after a median start */
 
@@ -88,12 +88,6 @@ const char *robust_reference_refused(const robust_reference_t *f);
 
 /* One sample; the estimate of the position. */
 double robust_reference_step(robust_reference_t *f, double z);
-
-/*
- * One sample of each of several joint filters with a gate, which takes all or none: (30) with y and H(k) for components
- * that have states of their own, so that r' Xi1^-1 r is the sum of theirs, at most limit. They restart together, too.
- */
-void robust_reference_step_joint(robust_reference_t *f, int count, const double *z, double limit, double *x);
 
 /* The filter's R: r, or the linear filter's [q1 (1 - N^2) + N^2] r. */
 double robust_reference_r(const robust_reference_t *f);

@@ -1,5 +1,5 @@
 /*
- * Paper 002's filters in double (reference/robust.h) on the three axes of the sensor: the defaults of the shipped
+ * Paper 002's filters in double (reference/robust_joint.h) on the three axes of the sensor: the defaults of the shipped
  * laws, the firmware's noise estimate. PC only.
  *
  *   one_gate   the robust one, {robust} of support/roles.h, with one gate over all three axes in place of one for each,
@@ -13,7 +13,7 @@
 
 #include "filter_list.h"
 #include "noise.h"
-#include "reference/robust.h"
+#include "reference/robust_joint.h"
 
 /* Behind PAPER_KINDS as the laws are shipped. */
 typedef enum {
