@@ -10,7 +10,9 @@ needs("papers", "numpy", "matplotlib")
 
 import numpy as np  # noqa: E402
 import comparison_runs as made  # noqa: E402
+from comparison_classes import of_recordings  # noqa: E402
 from comparison_filters import NAMES, filtered, roll_of  # noqa: E402
+from default_score import CLASSES  # noqa: E402
 from laws import PLAIN  # noqa: E402
 from resilience.filters import MERGED  # noqa: E402
 
@@ -62,6 +64,16 @@ def gates_are_worth_what_paper_002_says():
     found = made.k_ef(300)
     assert found["15 % outliers"][PLAIN] == 1.0 and 30.0 < found["15 % outliers"][MERGED] < 46.0, found["15 % outliers"]
     assert found["no outliers"]["huber"] < 1.0 < found["15 % outliers"]["huber"], found
+
+
+@test
+def recordings_alone_are_those_that_nobody_made():
+    """Two rates, one with errors of 2 and 8 (4 in the middle), one with 9: the root of 36. A made stream and a tuning recording do not count."""
+    row = {"level": "stream", "class": CLASSES[0], "filter": "f", "made": False}
+    rows = [{**row, "rate_hz": rate, "rmse_lsb_5Hz": error} for rate, error in ((100, 2.0), (100, 8.0), (200, 9.0))]
+    other = [{**rows[0], "made": True}, {**rows[0], "class": f"tuning, {CLASSES[0]}"}, {"level": "class"}]
+    found = of_recordings(rows + other)
+    assert list(found) == [CLASSES[0]] and abs(found[CLASSES[0]]["f"] - 6.0) < 1e-12, found
 
 
 if __name__ == "__main__":

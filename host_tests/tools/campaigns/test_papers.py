@@ -133,6 +133,16 @@ def expecting_runs_of_outliers_is_worth_it_in_runs_only():
 
 
 @test
+def one_gate_is_worth_it_where_an_outlier_hits_all_axes():
+    """Apart, 1 - 0.85^3 = 39 % of the samples have an outlier on some axis, and a gate over all loses them on every axis."""
+    rows = rows_of("002", "three_axes", 1500)
+    apart, together = ([value(rows, f"three_axes_{which}", name, "double", "k_ef_steady") for name in (ROBUST, f"{ROBUST}(one_gate)")]
+                       for which in ("apart", "together"))
+    assert apart[1] < 0.85 * apart[0] and together[0] < together[1] < 1.2 * together[0], (apart, together)
+    within(30, together[0], 46, ROBUST)
+
+
+@test
 def operations_are_those_of_the_equations():
     # n = 2, m = 1: 4 + 16 + 4 + 2 + 2 + 2 + 2 + 4 + 8 products and a quotient; 2 + 12 + 2 + 2 + 2 + 2 + 4 + 4 sums
     rows = rows_of("002", "matrix_step", 1) + rows_of("000", "complexity", 1)
