@@ -271,10 +271,29 @@ def both_programs_end_well_when_they_run_out_of_time():
 
 @test
 def what_cannot_be_is_one_sentence():
-    for name, words, sentence in (("faults", ("sda+nosuch",), "faults: sda+nosuch: no kind begins with nosuch; there are: "),
-                                  ("faults", ("--fw", "build/uno/hal_probe.elf", "sda"), "gives no row in a second: is it the firmware?"),
-                                  ("soak", ("--hours", "nan"), "--hours wants 0.05 (in less, not every kind has its time) to 1000, not nan"),
-                                  ("soak", ("--fw", "build/uno/hal_probe.elf"), "hal_probe.elf does not run: simrun: status 8")):
-        status, said, errors = program(f"campaigns/faults/{name}.py", *words)
-        assert status == 1 and errors.startswith(f"{name}: ") and sentence in errors and errors.count("\n") == 1, (words, errors)
-        assert "passed" not in said, said
+    for words, sentence in ((("sda+sda",), "faults: sda+sda: no kind makes a pair with itself: name two"),
+                            (("sda", "nosuch"), "faults: nosuch: no kind begins with nosuch; there are: "),
+                            (("sda+nosuch",), "faults: sda+nosuch: no kind begins with nosuch; there are: "),
+                            (("a+b+c",), "faults: a+b+c: a pair is A+B, of two kinds"),
+                            (("--fw", "build/no.elf"), "faults: there is no file build/no.elf: "),
+                            (("--fw", "build/uno/hal_probe.elf", "sda"),
+                             "faults: build/uno/hal_probe.elf gives no row in a second: is it the firmware?"),
+                            (("--fw", "/etc/passwd", "sda+scl"), "faults: simrun gave status 2 and no statistics: "),
+                            (("--sample", "abc"), "faults: argument --sample: invalid int value: 'abc'"),
+                            (("--sample", "0"), "faults: --sample and --jobs want 1 or more, --pairs 0 or more")):
+        status, said, errors = program("campaigns/faults/faults.py", *words)
+        assert status == 1 and errors.startswith(sentence) and errors.count("\n") == 1 and "passed" not in said, (words, errors)
+    for words, sentence in ((("--hours", "nan"), "--hours wants 0.05 (in less, not every kind has its time) to 1000, not nan"),
+                            (("--hours", "0"), "not 0"),
+                            (("--hours", "-3"), "not -3"), (("--hours", "1e7"), "not 1e+07"), (("--hours", "ten"), "invalid float value: 'ten'"),
+                            (("--every", "nan"), "--every wants"), (("--seed", "0"), "--seed wants"),
+                            (("--fw", "build/no.elf"), "there is no file build/no.elf: make build/no.elf"),
+                            (("--fw", "Makefile"), "Makefile does not run: simrun: Makefile: not an ELF file"),
+                            (("--fw", "build/uno/hal_probe.elf"), "hal_probe.elf does not run: simrun: status 8")):
+        status, said, errors = program("campaigns/faults/soak.py", *words)
+        assert status == 1 and errors.startswith("soak: ") and sentence in errors and errors.count("\n") == 1 and not said, (words, errors)
+    for simrun, of in (("faults", faults.need), ("soak", lambda path, how: soak.need(path, how, "soak"))):
+        try:
+            of("build/no/simrun", "make it")
+        except SystemExit as ended:
+            assert str(ended) == f"{simrun}: there is no file build/no/simrun: make it"
