@@ -145,7 +145,7 @@ def what_is_typed_makes_no_step_of_the_night_smaller():
     subprocess.run(["bash", "campaigns/nightly.sh"], capture_output=True, check=True, cwd=tree(), env={
         **os.environ, "PATH": f"{OUT.resolve()}:{os.environ['PATH']}", "CALLS": str(calls.resolve()), "NIGHT_PAGE": str(PAGE),
         "STEPS": "faults papers", "SAMPLE": "60", "ONLY": "x", "RUNS": "9", "MAKEFLAGS": " -- SAMPLE=60"})
-    assert calls.read_text(encoding="ascii") == "papers|\nfaults|\n", calls.read_text(encoding="ascii")
+    assert calls.read_text(encoding="ascii") == "papers|\npapers PAPER_SEED=2025|\nfaults|\n", calls.read_text(encoding="ascii")
 
 
 @test
