@@ -13,7 +13,7 @@ import bench_peers
 import laws
 import page_benchmarks
 import page_sources
-from bench_firmware import COMPILER, OUT, SIMRUN, Fault, image_size, measure_rest, measure_sample, printed, run
+from bench_firmware import COMPILER, OUT, Fault, image_size, measure_rest, measure_sample, printed, run
 from page_benchmarks import CALLS, DOCUMENT
 from results import cells, markdown, run_as_program
 

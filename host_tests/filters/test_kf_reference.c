@@ -81,6 +81,27 @@ TEST(estimate_equals_the_reference)
     }
 }
 
+/*
+ * filter_reset is a start as if the level had been read for ever: P11 is then what it is after 20,000 samples. It
+ * starts from P12 = sqrt(q), P11 = sqrt(2 P12), which in double comes within 1 %; the root is taken in whole counts of
+ * 2^-13, and half of its error goes into P11.
+ */
+TEST(a_reset_has_the_covariance_of_a_long_past)
+{
+    static const uint16_t rates[] = { 125, 250, 500, 1000, 2000, 4000, 8000 };
+    for (int i = 0; i < 7; i++) {
+        filter_config_t config = filter_defaults(&filter_law_kf, rates[i]);
+        filter_t f;
+        TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, &filter_law_kf, &config));
+        filter_reset(&f, 0);
+        double reset = f.own.kalman.p.p11;
+        feed(&f, 0, 20000);
+        double past = f.own.kalman.p.p11;
+        double bound = past * (0.01 + 0.5 / floor(sqrt(f.own.kalman.q22_uq26)));
+        TEST_ASSERT_DOUBLE_WITHIN(bound, past, reset);
+    }
+}
+
 TEST(probe_reports_the_variance)
 {
     filter_config_t config = { 1000, { [KF_R_LSB2_Q8] = 16 * 256, [KF_Q_LSB2_S3] = 10000 } };

@@ -66,6 +66,16 @@ TEST(constants_solve_their_equation)
     TEST_ASSERT_DOUBLE_WITHIN(512 / 64 + 1, mean + (1024 * unbias(3.0) - mean) / 64, mean_after(64, (uint32_t)mean));
 }
 
+/* A window of 256 rounds: a term within 128 counts of the mean leaves it. A window of 64 gives the term within 32. */
+TEST(a_full_window_rounds_to_the_nearest)
+{
+    const double from = 3e7;
+    double term = from + 64.0 * (mean_after(64, (uint32_t)from) - from);
+    TEST_ASSERT_EQUAL_DOUBLE(term - 64.0, mean_after(255, (uint32_t)term - 64U));
+    TEST_ASSERT_EQUAL_DOUBLE(term + 64.0, mean_after(255, (uint32_t)term + 64U));
+    TEST_ASSERT_EQUAL_DOUBLE(term - 191.0, mean_after(255, (uint32_t)term - 192U));
+}
+
 static double estimate(uint16_t rate_dhz, double sigma, double outliers, int samples, double amplitude, uint64_t seed)
 {
     noise_t n;

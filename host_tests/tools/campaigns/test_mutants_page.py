@@ -7,6 +7,7 @@ import types
 CAMPAIGN = pathlib.Path("campaigns/mutants/__main__.py")
 sys.path[:0] = [*pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split(), str(CAMPAIGN.parent)]
 import page_mutants  # noqa: E402
+from operators import mutants_of  # noqa: E402
 from system_support import OUT, refused, run_all, test  # noqa: E402
 
 
@@ -43,11 +44,18 @@ def a_page_counts_those_drawn_and_weights_folders_by_their_mutants():
 
 
 @test
+def every_committed_reason_is_of_a_mutant_of_this_tree():
+    files = {line.partition(":")[0] for line in page_mutants.EQUAL.read_text(encoding="utf-8").splitlines() if not line.startswith("#")}
+    keys = {mutant.key for file in files for mutant in mutants_of(file, pathlib.Path(file).read_text(encoding="utf-8"))}
+    assert len(page_mutants.reasons(keys)) > 1
+
+
+@test
 def a_reason_is_of_a_mutant_that_there_is():
     page_mutants.EQUAL = OUT / "equal.txt"
-    page_mutants.EQUAL.write_text("# key | why\nlib/a.c:f relational < -> > #1 | both are 0\n", encoding="utf-8")
-    assert page_mutants.reasons({"lib/a.c:f relational < -> > #1"}) == {"lib/a.c:f relational < -> > #1": "both are 0"}
-    refused(page_mutants.Fault, lambda: page_mutants.reasons({"lib/a.c:g relational < -> > #1"}), "f relational < -> > #1 is no mutant")
+    page_mutants.EQUAL.write_text("# key | why\nlib/a.c:f logical | -> & #1 | both are 0\n", encoding="utf-8")
+    assert page_mutants.reasons({"lib/a.c:f logical | -> & #1"}) == {"lib/a.c:f logical | -> & #1": "both are 0"}
+    refused(page_mutants.Fault, lambda: page_mutants.reasons({"lib/a.c:g logical | -> & #1"}), "f logical | -> & #1 is no mutant")
 
 
 @test
