@@ -3,11 +3,13 @@ prove."""
 import contextlib
 import io
 import pathlib
+import re
 import sys
 from unittest import mock
 
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
-from laws import PLAIN, ROBUST  # noqa: E402
+from images import HOLDS  # noqa: E402
+from laws import PLAIN, ROBUST, names  # noqa: E402
 import page_navigation
 import proof
 import recordings
@@ -83,6 +85,17 @@ def a_line_of_deliberate_that_stands_twice_is_refused():
         refused(SystemExit, proof.deliberate)
     first = " | ".join(part.strip() for part in lines[1].split("|")[:2])
     assert f"deliberate.txt: {first} stands twice: strike one" in text.getvalue(), text.getvalue()
+
+
+@test
+def pages_measured_at_night_alone_have_every_filter_and_the_default_and_show_every_picture():
+    """Between two nights a new filter, another default or a picture that no page shows any more would else go unseen."""
+    held = {name: pathlib.Path(f"docs/results/{name}.md").read_text(encoding="utf-8") for name in ("default-filter", "benchmarks")}
+    lacking = [(page, name) for page, text in held.items() for name in names() if not re.search(rf"^\| `?{name}`? \|", text, re.M)]
+    assert not lacking, lacking
+    assert f"The rule chooses **`{HOLDS['everyday'][0]}`**" in held["default-filter"]
+    pages = "".join(path.read_text(encoding="utf-8") for path in pathlib.Path("docs").rglob("*.md"))
+    assert set(re.findall(r"pictures/([\w-]+\.png)", pages)) == {path.name for path in results.PICTURES.iterdir()}
 
 
 if __name__ == "__main__":
