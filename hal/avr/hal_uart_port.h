@@ -7,9 +7,8 @@
 #define HAL_UART_PORT_H
 
 #define HAL_UART_DIVISOR(baud) ((F_CPU / 8 + (baud) / 2) / (baud))
-#define HAL_UART_REACHES(baud)                                   \
-    (F_CPU / 16 >= (baud) && HAL_UART_DIVISOR(baud) <= 256 &&    \
-     F_CPU / 8 * 1000 <= HAL_UART_DIVISOR(baud) * (baud)*1022 && \
+#define HAL_UART_REACHES(baud)                                                           \
+    (F_CPU / 16 >= (baud) && F_CPU / 8 * 1000 <= HAL_UART_DIVISOR(baud) * (baud)*1022 && \
      F_CPU / 8 * 1000 >= HAL_UART_DIVISOR(baud) * (baud)*978)
 
 #endif
