@@ -176,11 +176,13 @@ static void note(nav_second_t *second, flown_t *f, double t)
 static const flight_sample_t *samples_of(const nav_plan_t *plan)
 {
     static flight_sample_t sample[FLIGHT_SECONDS * FLIGHT_RATE];
+    static bool begun;
     static const flight_drift_t *drift;
     static uint32_t seed;
     static test_random_t random;
     static int made;
-    if (plan->drift != drift || plan->seed != seed) {
+    if (!begun || plan->drift != drift || plan->seed != seed) {
+        begun = true;
         drift = plan->drift;
         seed = plan->seed;
         random_seed(&random, seed);
