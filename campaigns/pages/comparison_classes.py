@@ -35,7 +35,7 @@ def of_json():
     for row in rows:
         if row["level"] == "class":
             found.setdefault(row["class"], {})[row["filter"]] = row["rmse_lsb"]
-    missing = [name for name in (*NAMES, *OF_PAPER) if any(name not in scores for scores in found.values())]
+    missing = [name for name in (*NAMES, *OF_PAPER, *OF_PAPER.values()) if any(name not in scores for scores in found.values())]
     if missing or not found:
         raise Fault(f"{JSON}: has no {', '.join(missing) or 'class'}: make default writes it anew")
     return found, rows[0]["recordings"], of_recordings(rows)

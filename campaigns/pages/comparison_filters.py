@@ -19,11 +19,12 @@ OURS = (DEFAULT, *RETURNING, MERGED, PLAIN)
 PEERS = ("ema", "median3_ema", "median5_ema", "hampel7_ema", "one_euro")  # in the order of peers.h
 WEIGHED = ("huber", "student_t", "correntropy", "imm3")                   # and of robust_peers.h
 NAMES = (*OURS, *PEERS, *WEIGHED)
-OF_PAPER = {"one_gate": RETURNING[0], "eq11": MERGED}                     # of paper_axes.h, and what each is but for that
+OF_PAPER = {"one_gate": "own_gates", "eq11": "alone"}                     # of paper_axes.h, and what each is but for that
 WORDS = {"ema": "EMA, 4 Hz", "median3_ema": "median of 3 + EMA", "median5_ema": "median of 5 + EMA", "hampel7_ema": "Hampel of 7 + EMA",
          "one_euro": "1-euro", "huber": "Huber Kalman filter", "student_t": "Student's t Kalman filter",
          "correntropy": "maximum correntropy Kalman filter",
-         "one_gate": "one gate over three axes", "eq11": "mixture by (11)", "imm3": "IMM of three",
+         "one_gate": "one gate over three axes", "own_gates": "a gate for each axis", "eq11": "mixture by (11)", "alone": "mixture without (11)",
+         "imm3": "IMM of three",
          FUSION: "Fusion, accelerometer alone", "raw": "no filter"}
 START_LSB_S = 200.0  # of the rate, as kalman.c
 FLOOR_LSB2 = 1.5 * 0.02  # R of the data sheet by the rate in Hz, as noise.c

@@ -10,7 +10,7 @@ from results import Fault
 
 # shown beside the list's, never chosen
 NOT_FILTERS = (f"median5_{PLAIN}", "ema", "median3_ema", "median5_ema", "hampel7_ema", "one_euro", "huber", "student_t", "correntropy", "imm3",
-               "one_gate", "eq11", "raw")
+               "own_gates", "one_gate", "alone", "eq11", "raw")
 CANDIDATE, NONE_PASSES = DEFAULT, "none"
 NEAR, MOST = 1.05, 1.25  # times the best: as good as it; the most that a default may have in any class
 NOT_JUDGED = "tuning, "  # before the class: what the defaults may be tuned with does not decide

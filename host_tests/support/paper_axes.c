@@ -12,7 +12,7 @@
 #define REACQUIRE 5
 #define MEDIAN_WINDOW 5
 
-static const char *const names[PAPER_ALL] = { "one_gate", "eq11", "own_gates", "alone" };
+static const char *const names[PAPER_KINDS] = { "own_gates", "one_gate", "alone", "eq11" };
 
 const char *paper_axes_name(paper_kind_t kind)
 {
