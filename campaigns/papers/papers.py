@@ -64,10 +64,11 @@ def run_one(program, experiment, options):
     rows = []
     for line in output_of([*command_of(program), experiment, "--runs", options.runs, "--seed", options.seed]).splitlines():
         kind, *cells = line.split("\t")
-        if kind != "row" or len(cells) != 8:
+        if kind != "row" or len(cells) not in (8, 9):
             raise Fault(f"{experiment}: cannot read its line '{line}'")
         rows.append(dict(zip(("experiment", "filter", "arithmetic", "metric"), cells),
-                         value=float(cells[4]), ci_lo=number(cells[5]), ci_hi=number(cells[6]), runs=int(cells[7])))
+                         value=float(cells[4]), ci_lo=number(cells[5]), ci_hi=number(cells[6]), runs=int(cells[7]),
+                         sample=[float(word) for word in "".join(cells[8:]).split(",") if word]))
     if not rows:
         raise Fault(f"{experiment}: printed no row")
     return rows
@@ -104,7 +105,7 @@ def run_all(experiments, options):
 
 def as_json(paper, rows):
     """A value that is not finite (never back) is null."""
-    fields = ("experiment", "filter", "arithmetic", "metric", "value", "ci_lo", "ci_hi", "runs", "published", "rule", "verdict", "reason")
+    fields = ("experiment", "filter", "arithmetic", "metric", "value", "ci_lo", "ci_hi", "share", "runs", "published", "rule", "verdict", "reason")
     finite = lambda v: None if isinstance(v, float) and abs(v) == float("inf") else v
     return [{"paper": paper, **{f: finite(row.get(f)) for f in fields}} for row in rows]
 

@@ -9,7 +9,7 @@ import math
 
 from laws import PLAIN
 from papers_bands import Fault, Rows, band_of, bound_value, faulty_cells, limit_of, too_wide
-from papers_verdict import OTHER, TAKES, published_range, rule_of, verdict
+from papers_verdict import OTHER, TAKES, published_range, rule_of, share_within, verdict
 
 FIELDS = ["experiment", "filter", "arithmetic", "metric", "low", "high", "published", "takes", "reason"]
 ARITHMETICS = ("double", "float", "fixed")
@@ -76,7 +76,9 @@ def judge_row(row, rule, full_runs=VERDICT_RUNS, rows=None):
         faults.append(f"{name_of(row)} = {value:.6g}, above its band to {high:g} ({rule['line']})")
     if rule["published"]:
         shown = rule_of(rule["published"], rule["takes"], lambda text: bound_value(text, row, rows, rule["line"]))
-        row.update(published=rule["published"], rule=shown, verdict=verdict(shown, value, row.get("ci_lo"), row.get("ci_hi")), reason=rule["reason"])
+        share = share_within(shown, row["sample"]) if row.get("sample") and shown != OTHER else None
+        row.update(published=rule["published"], rule=shown, share=share, reason=rule["reason"],
+                   verdict=verdict(shown, value, row.get("ci_lo"), row.get("ci_hi"), share))
     return faults
 
 

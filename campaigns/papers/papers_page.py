@@ -6,7 +6,7 @@ import math
 from results import FOLDER, Results, markdown
 
 BESIDE = "Beside the paper"
-JUDGED = ("filter", "arithmetic", "experiment", "number", "measured", "interval", "printed", "rule", "verdict", "reason")
+JUDGED = ("filter", "arithmetic", "experiment", "number", "measured", "interval", "printed", "rule", "share", "verdict", "reason")
 DIVERGED = 1e-6  # a K_ef below it is that of an estimate without bounds
 
 
@@ -59,20 +59,22 @@ def verdicts(rows):
     lines = []
     for r in (r for r in rows if r.get("verdict")):
         interval = f"{exactly(r['ci_lo'])} to {exactly(r['ci_hi'])}" if r.get("ci_lo") is not None else ""
+        share = "" if r.get("share") is None else exactly(r["share"])
         lines.append([f"`{r['filter']}`", r["arithmetic"], r["experiment"], r["metric"], exactly(r["value"]), interval, r["published"], r["rule"],
-                      r["verdict"], r["reason"]])
+                      share, r["verdict"], r["reason"]])
     return table(JUDGED, lines)
 
 
 def judged_on(text):
-    """The rows of a page's table of verdicts, as dictionaries of JUDGED; measured and interval are numbers."""
+    """The rows of a page's table of verdicts, as dictionaries of JUDGED; measured, interval and share are numbers."""
     found = []
     for line in text.partition(f"## {BESIDE}\n")[2].partition("\n## ")[0].splitlines():
         if line.startswith("| `"):
             row = dict(zip(JUDGED, (cell.strip() for cell in line[2:-2].split(" | "))), line=line)
             low, _, high = row["interval"].partition(" to ")
             found.append({**row, "filter": row["filter"].strip("`"), "measured": float(row["measured"].replace("never", "inf")),
-                          "interval": (float(low), float(high.replace("never", "inf"))) if low else (None, None)})
+                          "interval": (float(low), float(high.replace("never", "inf"))) if low else (None, None),
+                          "share": float(row["share"]) if row["share"] else None})
     return found
 
 

@@ -13,14 +13,19 @@ def whole_number(word):
 
 def cells(value):
     """value, low and high of a row; of what is no interval the last two are empty."""
-    value = value if isinstance(value, tuple) else (value, None, None)
+    value = value[:3] if isinstance(value, tuple) else (value, None, None)
     return ["" if number is None else f"{number:.9g}" for number in value]
+
+
+def sample(value):
+    """The experiments that an interval is the spread of: a last cell, numbers with commas, or none."""
+    return [",".join(f"{number:.9g}" for number in value.sample)] if hasattr(value, "sample") else []
 
 
 def main(name, experiments, words, refusal=ValueError):
     """experiments: {name: (relative work, options -> rows (experiment, filter, arithmetic, metric, value or interval, runs))}"""
     parser = argparse.ArgumentParser(prog=f"campaigns/{name}", description="An experiment's rows: its name, filter, arithmetic, metric, value, low "
-                                     "and high of its interval, number of runs it was made of.")
+                                     "and high of its interval, number of runs it was made of, the experiments that the interval holds.")
     parser.add_argument("experiment", nargs="?", choices=list(experiments))
     parser.add_argument("--list", action="store_true", help="names of the experiments, and how much work each is")
     parser.add_argument("--runs", type=whole_number, default=DEFAULT_RUNS)
@@ -33,7 +38,7 @@ def main(name, experiments, words, refusal=ValueError):
         parser.error("names no experiment (--list shows them)")
     try:
         for experiment, filter_name, arithmetic, metric, value, runs in experiments[options.experiment][1](options):
-            print("\t".join(["row", experiment, filter_name, arithmetic, metric, *cells(value), str(runs)]))
+            print("\t".join(["row", experiment, filter_name, arithmetic, metric, *cells(value), str(runs), *sample(value)]))
     except refusal as reason:
         print(f"{name}: {reason}", file=sys.stderr)
         return 2

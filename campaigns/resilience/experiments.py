@@ -2,6 +2,7 @@
 Kalman filter's variance over the filter's at each sample of an experiment of 50 runs. k_ef_steady and k_ef_pooled are ours: mean square errors, bias
 included, pooled over a window of all runs. All on the same realisations."""
 import math
+from collections import namedtuple
 
 import numpy as np
 from synthesis.batch import run_seed
@@ -18,6 +19,7 @@ POINTWISE = {"p10": 0.1, "median": 0.5, "p90": 0.9, "peak": 1.0}
 WARM_UP_ROWS = 5
 LEARNT = 0.05  # q1 is, that near to the truth
 NORMAL_95 = 1.959964
+Spread = namedtuple("Spread", "value low high sample")  # an interval, and the experiments that it is of
 
 
 def seeds_of(seed, runs):
@@ -65,7 +67,7 @@ def ratio_rows(experiment, filters, squares, metric, name, options):
 
 def of_experiments(found):
     """Median over experiments of the paper's size, or over runs; the interval holds nine in ten of them."""
-    return Interval(*(quantile(found, part) for part in (0.5, 0.05, 0.95)))
+    return Spread(*(quantile(found, part) for part in (0.5, 0.05, 0.95)), found)
 
 
 def group_ratio(above, below):

@@ -14,7 +14,7 @@ import papers_judge  # noqa: E402
 import papers_page  # noqa: E402
 from laws import ROBUST  # noqa: E402
 from papers_support import made, rule  # noqa: E402
-from papers_verdict import VERDICTS, published_range, rule_of, verdict  # noqa: E402
+from papers_verdict import VERDICTS, published_range, rule_of, share_within, verdict  # noqa: E402
 from system_support import refused, run_all, test  # noqa: E402
 
 INFINITE = float("inf")
@@ -43,8 +43,25 @@ def verdicts_follow_from_number_interval_and_rule():
 
 
 @test
+def between_two_peaks_is_not_within_the_spread():
+    """Of 200 experiments 20 are a tenth. One peak far below, one above: the interval spans what is printed, and hardly an experiment is there."""
+    assert share_within("12 to 15", [11.9, 12.0, 15.0, 15.1]) == 0.5
+    for between, wanted in ((0, "refuted"), (19, "refuted"), (20, "reproduced within the spread")):
+        sample = [0.2] * 150 + [13.5] * between + [28.0] * (50 - between)
+        row, = rows = [made(value=0.2, ci_lo=0.2, ci_hi=28.0, sample=sample)]
+        assert papers_judge.judge(rows, [rule(published="12-15", reason="why")], partial=True) == []
+        assert (row["verdict"], row["share"]) == (wanted, between / 200), row
+    # one peak, whose edge what is printed touches
+    sample = [30.0 + 0.05 * i for i in range(200)]
+    assert verdict("20 to 30.92", 35.0, 30.5, 39.5, share_within("20 to 30.92", sample)) == "not reproduced"
+    assert verdict("20 to 30.97", 35.0, 30.5, 39.5, share_within("20 to 30.97", sample)) == "reproduced within the spread"
+    # a number of experiments that the printed range holds is reproduced, whatever their share
+    assert verdict("30 to 40", 35.0, 0.0, 90.0, 0.01) == "reproduced"
+
+
+@test
 def rules_are_what_is_printed():
-    for text, limits in (("~30", (25, 35)), ("~60-80", (55, 85)), ("~0.09", (0.085, 0.095)), ("~102", (101.5, 102.5)), ("2-2.5", (2, 2.5)),
+    for text, limits in (("~30", (29.5, 30.5)), ("~60-80", (59.5, 80.5)), ("~0.09", (0.085, 0.095)), ("~102", (101.5, 102.5)), ("2-2.5", (2, 2.5)),
                          ("< 2", (-INFINITE, 2)), ("0.1", (0.05, 0.15)), ("0.10", (0.095, 0.105)), ("-3.5", (-3.55, -3.45)),
                          ("6 degrees", (5.5, 6.5)), ("0 +-0.05", (-0.05, 0.05)), ("16", (16, 16))):
         assert all(abs(a - b) < 1e-12 or a == b for a, b in zip(published_range(text), limits)), text
@@ -60,7 +77,7 @@ def no_row_of_the_pages_disobeys_its_rule():
     judged = {paper: papers_page.judged_on(papers_page.document(paper).read_text(encoding="utf-8")) for paper in papers.PAPERS}
     assert all(len(rows) > 5 for rows in judged.values()) and sum(map(len, judged.values())) > 200, {p: len(rows) for p, rows in judged.items()}
     disobeying = [row["line"] for rows in judged.values() for row in rows
-                  if verdict(row["rule"], row["measured"], *row["interval"]) != row["verdict"]]
+                  if verdict(row["rule"], row["measured"], *row["interval"], row["share"]) != row["verdict"]]
     assert disobeying == [], disobeying
     # the rule is that of the file of expectations, where it holds no bound of the run
     for paper, (_, path) in papers.PAPERS.items():
@@ -183,7 +200,7 @@ def the_page_holds_what_was_measured():
         papers_page.write_page("002", rows, types.SimpleNamespace(runs=300, seed=7), "0123456789ab")
     text = document.read_text(encoding="utf-8")
     assert text.startswith("# Paper 002: results\nWritten by `make papers`; do not edit it.\n<!-- sources: 0123456789ab -->\n"), text
-    for words in (f"| `{ROBUST}` | double | 0.977", "never", "| 30-40 | 30 to 40 | reproduced | why |", "diverges",
+    for words in (f"| `{ROBUST}` | double | 0.977", "never", "| 30-40 | 30 to 40 |  | reproduced | why |", "diverges",
                   "300 runs per experiment (", ", seed 7."):
         assert words in text, f"{words} is not in:\n{text}"
     assert [row["measured"] for row in papers_page.judged_on(text)] == [35.0]
