@@ -191,6 +191,11 @@ def outliers_in_runs(options):
         squares, _, variances = scored(filters, Scenario(first_clean=True, stay=stay), seeds_of(options.seed + 5, options.runs))
         yield from ratio_rows(experiment, filters, squares, "k_ef_steady", "k_ef_steady", options)
         yield from pointwise_rows(experiment, filters, variances, options)
+    # what (11) is told is wrong
+    few = [f for f in filters if f.name in (PLAIN, MERGED, *IN_RUNS)]
+    for experiment, stay in (("in_runs_of_two", 0.5), ("in_runs_of_twenty", 0.95)):
+        squares, *_ = scored(few, Scenario(first_clean=True, stay=stay), seeds_of(options.seed + 5, options.runs))
+        yield from ratio_rows(experiment, few, squares, "k_ef_steady", "k_ef_steady", options)
 
 
 def learning(options):

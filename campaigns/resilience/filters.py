@@ -16,7 +16,7 @@ SHIPPED_RATE_VARIANCE = 16.0    # on the chip the rate is thought uncertain by 2
 # seconds, 40.5 Hz, as a user has it.
 HURRY = 20.0
 SAMPLES, GROUP = 400, 50  # of a run; runs of an experiment, the paper's N_p
-STAY = 0.8                # an outlier follows an outlier: runs of five on average
+STAY = 0.8                # an outlier follows an outlier: runs of five on average; what (11) is told is the truth where the runs are of five
 
 PLAIN, LINEAR, PUBLISHED, GATED, MERGED = "kf", "lrf", "sprf_paper", "sprf", "pbf"
 LEARNING = ("af", "af_grid")

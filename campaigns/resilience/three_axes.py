@@ -1,5 +1,6 @@
-"""Paper 002's y and H(k): one gate over three components against a gate for each, with (11) beside, on three realisations of Table 1 at a time. In
-double; the gate of the components is that of 3 sigma, with the same false alarms of chi-square with three degrees of freedom."""
+"""Paper 002's y and H(k): one gate over three components against a gate for each, on three realisations of Table 1 at a time. Beside them (11),
+which is told how the runs are made. In double; the gate of the components is that of 3 sigma, with the same false alarms of chi-square with three
+degrees of freedom."""
 import numpy as np
 from figures_traces import joint, realisations, reference
 
