@@ -75,13 +75,13 @@ def run_one(program, experiment, options):
 
 
 def experiments_of(programs):
-    """{experiment: (program, relative work)}."""
+    """{experiment: (program, work in about seconds)}."""
     lines = [(program, line.split("\t")) for program in programs for line in output_of([*command_of(program), "--list"]).splitlines()]
     return {name: (program, float(work)) for program, (name, work) in lines}
 
 
 def chosen_of(words, only=()):
-    """{paper: {experiment: (program, relative work)}} of the experiments whose name contains a word, or of all; of all papers or only some."""
+    """{paper: {experiment: (program, work)}} of the experiments whose name contains a word, or of all; of all papers or only some."""
     found = {paper: experiments_of(programs) for paper, (programs, _) in PAPERS.items() if not only or paper in only}
     chosen = {paper: {name: entry for name, entry in all_.items() if not words or any(w in name for w in words)} for paper, all_ in found.items()}
     if not any(chosen.values()):
@@ -89,18 +89,22 @@ def chosen_of(words, only=()):
     return {paper: experiments for paper, experiments in chosen.items() if experiments}
 
 
-def run_all(experiments, options):
-    """Rows of all experiments, in the order of the list; two at a time."""
-    began, done, work = time.monotonic(), 0.0, sum(part for _, part in experiments.values())
+def run_all(chosen, options):
+    """{paper: rows of its experiments, in the order of the list} of {paper: {experiment: (program, work)}}; two at a time, longest first."""
+    began, done = time.monotonic(), 0.0
+    tasks = sorted(((part, program, name, paper) for paper, experiments in chosen.items() for name, (program, part) in experiments.items()),
+                   key=lambda task: -task[0])
+    work = sum(part for part, *_ in tasks)
     try:
         with concurrent.futures.ThreadPoolExecutor(WORKERS) as pool:
-            futures = {pool.submit(run_one, program, name, options): part for name, (program, part) in experiments.items()}
+            futures = {pool.submit(run_one, program, name, options): (part, paper, name) for part, program, name, paper in tasks}
             for future in concurrent.futures.as_completed(futures):
-                done += futures[future]
+                done += futures[future][0]
                 show_progress(done, work, began)
     finally:
         show_progress(0.0, work, began)
-    return [row for future in futures for row in future.result()]
+    rows = {(paper, name): future.result() for future, (_, paper, name) in futures.items()}
+    return {paper: [row for name in experiments for row in rows[paper, name]] for paper, experiments in chosen.items()}
 
 
 def as_json(paper, rows):
@@ -133,9 +137,8 @@ def main():
     whole = not options.only and options.runs >= PAGE_RUNS and options.seed == PAGE_SEED
     began, failures, collected = time.monotonic(), [], []
     sources = {paper: page_sources.hash_now(document(paper)) for paper in PAPERS}
-    for paper, experiments in chosen_of(options.only, options.paper).items():
+    for paper, rows in run_all(chosen_of(options.only, options.paper), options).items():
         expected = read_expected(PAPERS[paper][1])
-        rows = run_all(experiments, options)
         found = judge(rows, expected, bool(options.only), FULL_RUNS[paper], WANTED[paper])
         failures += [f"paper {paper}: {text}" for text in found]
         collected += as_json(paper, rows)

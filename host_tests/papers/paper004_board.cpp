@@ -110,7 +110,7 @@ std::vector<Subject> subjects()
 {
     return { of_list("auto", { { "gate", { 3, 4, 5, 6, 7, 8, 10 } },
                                { "slow", { 1400, 2000, 2400, 2800, 3200, 4000, 5600 } },
-                               { "middle", { 600, 800, 900, 1100, 1300, 1600 } },
+                               { "middle", { 600, 800, 900, 1100, 1300, 1600, 2000 } },
                                { "fast", { 350, 400, 450, 500, 550, 650, 800 } } }),
              of_list("sprf", { { "q", { 2, 5, 10, 20, 40, 80, 150, 300 } },
                                { "gate", { 4, 6, 7, 8, 9, 10, 11, 12, 14, 16 } },
@@ -253,5 +253,5 @@ void phases(const Options &options)
 
 int main(int argc, char **argv)
 {
-    return papers::program("paper004_board", { { "board_phases", 8, papers::board::phases } }, argc, argv);
+    return papers::program("paper004_board", { { "board_phases", 32, papers::board::phases } }, argc, argv);
 }

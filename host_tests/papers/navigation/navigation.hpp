@@ -22,10 +22,13 @@ void tau(const Options &options);
 // Sigmas without closed loop at 160, 399 and 500 s of the flight of 3.4, by five forms.
 void covariance(const Options &options);
 
-// Errors in closed loop, a flight for each 200 runs and 20 at most, without GPS in 160..400 s: nav/lib in float with
+// Errors in closed loop, a flight for each 50 runs and 200 at most, without GPS in 160..400 s: nav/lib in float with
 // its queue, the field at 1 and 10 Hz; and in double without queue, the field at 100 Hz.
 void closed_loop(const Options &options);
 void closed_loop_100_hz(const Options &options);
+
+// One case of it, five times as many flights.
+void closed_loop_100_hz_25_q(const Options &options);
 } // namespace papers::navigation
 
 #endif

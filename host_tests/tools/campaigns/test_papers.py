@@ -177,7 +177,7 @@ def progress_is_shown_on_a_terminal_only_and_cleared():
         stream.isatty = lambda: on_terminal
         with contextlib.redirect_stderr(stream):
             papers.show_progress(3.0, 4.0, time.monotonic() - 30.0)
-            assert papers.run_all({}, None) == []
+            assert papers.run_all({}, None) == {}
         assert (" 75 %  10 s left\r\x1b[K" in stream.getvalue()) == on_terminal == bool(stream.getvalue()), stream.getvalue()
 
 
