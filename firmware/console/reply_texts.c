@@ -13,7 +13,7 @@
 static const char names[] IN_FLASH = REPLIES(NO_NAME, NAME);
 
 #define NO_COMMAND(...)
-#define ONE_COMMAND(...) +1
+#define ONE_COMMAND(...) +1 /* NOLINT(bugprone-macro-parentheses) */
 enum { COMMANDS = 0 REPLIES(NO_COMMAND, ONE_COMMAND) };
 _Static_assert(NOTICE_BANNER == 0 && NOTICE_LISTING == (int)COMMANDS, "the commands follow the banner");
 
