@@ -64,6 +64,16 @@ TEST(test_noise_is_estimated_beside_a_law_only_where_it_does_not_itself)
     TEST_ASSERT_GREATER_THAN_INT(0, own);
 }
 
+/* R goes from the data sheet's floor to the estimate of 1.5 x 8^2: the gain becomes that of a noisier sensor. */
+TEST(test_the_filter_is_given_the_estimate)
+{
+    begin(plain_kind(), false);
+    rest(0.5);
+    uint16_t quiet_uq16 = axis.filter.gain_uq16;
+    rest(8.0);
+    TEST_ASSERT_LESS_THAN_UINT16(quiet_uq16 / 4U * 3U, axis.filter.gain_uq16);
+}
+
 TEST(test_a_law_that_does_not_identify_takes_the_estimate)
 {
     begin(DEFAULT_KIND, false);
