@@ -59,8 +59,8 @@ export const PASSES_MS = 2 * 8.192 + 1;
 
 // Words against words. Two clocks microseconds apart measure a rate to 0.02 %; the tolerances are granted to how long a fault was, to the
 // samples that it cost, and to those read in one go after it.
-export function compareWords(mine, other, toleranceMs = 0, toleranceLost = 0, toleranceDrained = 0, toleranceOverruns = 0) {
-  const near = [[/overruns (\d+)/, toleranceOverruns], [/after (\d+) ms/, toleranceMs], [/, (\d+) lost,/, toleranceLost], [/drained (\d+)/, toleranceDrained], [/measured ([\d.]+) Hz/, 0.2]];
+export function compareWords(mine, other, toleranceMs = 0, toleranceLost = 0, toleranceDrained = 0) {
+  const near = [[/after (\d+) ms/, toleranceMs], [/, (\d+) lost,/, toleranceLost], [/drained (\d+)/, toleranceDrained], [/measured ([\d.]+) Hz/, 0.2]];
   const apart = (a, b, [pattern, tolerance]) => Math.abs((a.match(pattern)?.[1] ?? 0) - (b.match(pattern)?.[1] ?? 0)) > tolerance;
   const plain = (text) => near.reduce((t, [pattern]) => t.replace(pattern, ''), text);
   for (let i = 0; i < Math.max(mine.length, other.length); i++) {
