@@ -23,6 +23,8 @@ const SLOWLY = 1;
 const starved = (ms) => lasting(ms, (b) => b.uno.starve(true), (b) => b.uno.starve(false));
 const once = (kind) => (board, at) => board.at(at, (b) => b.wires.once.push(kind));
 
+// A main that sleeps until the FIFO is full is the one case that stays sensitive: within 3 ms of moments, 0.17 ms apart, the two simulators
+// count the same in about half. 58 ms is a length at which they do at the moment chosen below; a change of the image may move that.
 // name: what simrun calls it, the same here, when if not after a sample (AT_MS), rate, how many drained samples may be apart, steady
 export const FAULTS = {
   absent: { sim: ['0ms:unplug'], here: (b) => { b.wires.unplugged = true; }, at: 0 },
@@ -44,7 +46,7 @@ export const FAULTS = {
   unplugged_100_ms_400_hz: { sim: [':unplug:100'], here: unplugged(100), rate: 400 },
   sda_low_100_ms_400_hz: { sim: [':sda:100'], here: held('sda', 100), rate: 400 },
   starved_20_ms_800_hz: { sim: [':starve:20'], here: starved(20), rate: 800, drained: AT_THE_END },
-  starved_60_ms_800_hz: { sim: [':starve:58'], here: starved(58), rate: 800, drained: AT_THE_END + SLOWLY, steady: true }, // the FIFO overflows
+  starved_58_ms_800_hz: { sim: [':starve:58'], here: starved(58), rate: 800, drained: AT_THE_END + SLOWLY, steady: true }, // the FIFO overflows
   starved_200_ms_100_hz: { sim: [':starve:200'], here: starved(200) },
   reset_button: { sim: [':reset'], here: (b, at) => b.at(at, () => b.reset(MCUSR.external)), options: ['--expect-resets', 1] },
   nothing: { sim: [], here: () => {} },

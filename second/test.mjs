@@ -67,7 +67,7 @@ test('asked, leastRows, lookThrough: unknown names, too few rows and failed runs
   assert.deepEqual(asked('ci', 'rows planted'), ['rows', 'planted']);
   for (const [part, only] of [['foo', ''], ['', 'foo'], ['', 'rows,foo'], ['', ',']]) assert.throws(() => asked(part, only), /there (is|are)/);
   assert.equal(leastRows(FAULTS.unplugged_500_ms, 100), 190); // 2.5 s of 100 Hz less the fault and twice 50 ms
-  assert.equal(leastRows(FAULTS.starved_60_ms_800_hz, 800), 20 + 800 - 64);
+  assert.equal(leastRows(FAULTS.starved_58_ms_800_hz, 800), 20 + 800 - 64);
   assert.equal(lookThrough([1, 2], (n) => ({ rows: 9, why: n === 2 ? 'rows differ' : null })).found, 'rows differ');
   for (const run of [() => { throw new Error('status 1'); }, () => ({ rows: 0, why: 'no rows' }), () => ({ rows: 9, why: null })]) {
     const { found, why } = lookThrough([1], run);
