@@ -68,12 +68,13 @@ $(PARTS): mk/scripts/test_parts.py $(wildcard $(addprefix host_tests/*/*.,c h cp
 endif
 
 $(H)/native_replay: $(H)/o2/host_tests/system/native_replay.o
-$(H)/recordings $(H)/default_filter: $(H)/%: $(H)/o2/host_tests/tools/campaigns/%.o
-OPTIMISED := $(addprefix $(H)/,native_replay recordings default_filter)
-# two contenders are paper 002's references, in C++
+$(H)/recordings: $(H)/o2/host_tests/tools/campaigns/recordings.o
+$(H)/native_replay $(H)/recordings: $(ARCHIVES_O2)
+	@$(HOST_CC) $(call linked,$^) -lm -o $@
+
+# with paper 002's references, in C++, as contenders
 PAPER_AXES_O2 := $(addprefix $(H)/o2/host_tests/reference/,robust.o robust_joint.o)
-$(H)/default_filter: $(PAPER_AXES_O2)
-$(OPTIMISED): $(ARCHIVES_O2)
+$(H)/default_filter: $(H)/o2/host_tests/tools/campaigns/default_filter.o $(PAPER_AXES_O2) $(ARCHIVES_O2)
 	@$(HOST_CXX) $(call linked,$^) -lm -o $@
 
 $(H)/o2/host_tests/reference/%.o: host_tests/reference/%.cpp host_tests/reference/robust.h host_tests/reference/robust_joint.h host_tests/reference/matrices.hpp Makefile mk/host.mk

@@ -101,6 +101,15 @@ def board_with_two_saves():
     return image.read_bytes()
 
 
+def writes_of_a_save(kept):
+    """EEPROM writes of the save of the third set, which leaves one of the two copies as it was."""
+    image = OUT / "settings-cut.bin"
+    image.write_bytes(kept)
+    writes = saved(image, SETS[2], image_with(DEFAULT))["eeprom_writes"]
+    assert image.read_bytes()[0x200:0x24D] == kept[0x200:0x24D] or image.read_bytes()[0x100:0x14D] == kept[0x100:0x14D], "one copy at a time"
+    return writes
+
+
 def cut(kept, fault, seed=1, first="stop"):
     """A save of the third set, cut so; rows go out meanwhile unless `first` is stop.
 
@@ -119,10 +128,7 @@ def cut(kept, fault, seed=1, first="stop"):
 def settings_survive_a_power_cut_in_every_write_of_a_save():
     """Every write with one kind of what is left in turn, before and after by turns; the outer ones with all kinds."""
     kept = board_with_two_saves()
-    image = OUT / "settings-cut.bin"
-    image.write_bytes(kept)
-    writes = saved(image, SETS[2], image_with(DEFAULT))["eeprom_writes"]
-    assert image.read_bytes()[0x200:0x24D] == kept[0x200:0x24D] or image.read_bytes()[0x100:0x14D] == kept[0x100:0x14D], "one copy at a time"
+    writes = writes_of_a_save(kept)
     outer = (1, 2, writes // 2, writes - 1, writes)
     before = new = cuts = 0
     for n in range(1, writes + 1):
@@ -148,9 +154,7 @@ def settings_survive_a_power_cut_in_every_write_of_a_save():
 def settings_survive_a_power_cut_in_a_save_while_rows_go_out():
     """The board does not stop for a save: its first, middle and last writes are cut while it samples."""
     kept = board_with_two_saves()
-    image = OUT / "settings-cut.bin"
-    image.write_bytes(kept)
-    writes = saved(image, SETS[2], image_with(DEFAULT))["eeprom_writes"]
+    writes = writes_of_a_save(kept)
     for i, n in enumerate((1, 2, writes // 3, writes // 2, writes - 1, writes)):
         for kind in (f"{n}:mcupower:{LEFT[i % 4]}", f"{n}.before:mcupower"):
             assert cut(kept, f"eeprom:{kind}", n, first="mode csv") in ((1, "as saved"), (1, "as saved, other copy damaged")), kind
