@@ -228,6 +228,13 @@ class Simulated:
     def write(self, data):
         self.typed += os.write(self.fd, data)
 
+    def sending_rows(self):
+        """Itself, once rows come. What it has said until then is gone."""
+        heard = b""
+        while not re.search(rb"\n\d+,[-0-9,]+\r?\n", heard):
+            heard += os.read(self.fd, 4096)
+        return self
+
     def press(self):
         self.write(b"status\n\n")
 
