@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""No circles: of two modules at most one may use what the other defines, also by way of others; and no header of firmware, lib and nav/lib declares
-an object. Looks into the compiled objects: an arrow is a symbol used here and defined there. The rooms of the firmware are one folder.
+"""No circles: of two modules at most one may use what the other defines, also by way of others; and no header of firmware, hal, lib and nav/lib
+declares an object. Looks into the compiled objects: an arrow is a symbol used here and defined there. The rooms of the firmware are one folder.
 
     check_circles.py OBJECTS...     folders of objects of the chip and of the PC, with the sources' paths in them
 """
@@ -14,6 +14,8 @@ from check_support import Stop, main, report, run
 
 # what is looked at, each for itself
 FOLDERS = ["firmware", "lib/filters/src", "lib/tilt/src", "lib/adxl345/src", "hal/host", "sim"]
+HEADERS = ["firmware", "hal", "lib", "nav/lib"]
+ALLOWED = {"hal/avr/hal_time_port.h": "extern volatile hal_tick_t hal_tick;"}  # inline in interrupts, where a call costs 16 cycles of registers
 OBJECT = re.compile(r'^\s*extern\s+(?!"C")[^(;]*;', re.M)
 
 
@@ -57,11 +59,11 @@ def circles(objects):
 
 
 def objects_in_headers():
-    for folder in ("firmware", "lib", "nav/lib"):
+    for folder in HEADERS:
         for path in sorted(pathlib.Path(folder).rglob("*.h")):
             for found in OBJECT.finditer("\n".join(line for _, line in code(path))):
                 words = " ".join(found.group().split())
-                if not re.search(r"\bconst\b", words):
+                if not re.search(r"\bconst\b", words) and ALLOWED.get(str(path)) != words:
                     yield f"{path}: declares an object, which anybody may change: {words}"
 
 
@@ -73,4 +75,4 @@ def findings():
 
 
 if __name__ == "__main__":
-    main(lambda: report("circles", list(findings()), f"none in {', '.join(FOLDERS)}; no object in a header of firmware, lib and nav/lib"))
+    main(lambda: report("circles", list(findings()), f"none in {', '.join(FOLDERS)}; no object in a header of {', '.join(HEADERS)}"))

@@ -4,8 +4,6 @@
  */
 #include "hal_host.h"
 
-#include <string.h>
-
 #include "hal_host_private.h"
 #include "hal_irq.h"
 #include "hal_led.h"
@@ -16,8 +14,7 @@
 
 #define ALARM_RANGE_US 32768u /* of the UNO's 16-bit counter: the alarm repeats after it */
 
-uint32_t hal_host_cpu_hz = (uint32_t)HAL_HOST_HZ;
-
+static uint32_t cpu_hz = (uint32_t)HAL_HOST_HZ;
 static uint64_t tick_at;
 static uint64_t alarm_at;
 static uint64_t watchdog_at;
@@ -58,7 +55,7 @@ static uint64_t watchdog_next(void)
 
 static void watchdog_step(void)
 {
-    bitten_at = host_now;
+    bitten_at = hal_host_now();
     host_clock_stop();
 }
 
@@ -71,11 +68,9 @@ static const host_part_t parts[] = {
 
 void hal_host_begin(const hal_host_config_t *config, const stream_t *stream, bool loop)
 {
-    host_config = *config;
-    host_clock_begin(parts, sizeof parts / sizeof parts[0]);
-    hal_host_cpu_hz = (uint32_t)HAL_HOST_HZ;
-    memset(&hal_host_faults, 0, sizeof hal_host_faults);
-    hal_host_faults.next_status = -1;
+    host_clock_begin(config, parts, sizeof parts / sizeof parts[0]);
+    cpu_hz = (uint32_t)HAL_HOST_HZ;
+    *hal_host_faults() = (hal_host_faults_t){ .next_status = -1 };
     host_eeprom_power_on();
     host_sensor_begin(stream, loop);
     host_i2c_power_on();
@@ -98,6 +93,16 @@ void hal_host_reset_mcu(uint8_t cause)
     led = false;
     host_i2c_begin();
     host_uart_begin();
+}
+
+void hal_host_set_cpu_hz(uint32_t hz)
+{
+    cpu_hz = hz;
+}
+
+uint32_t hal_host_cpu_hz(void)
+{
+    return cpu_hz;
 }
 
 uint64_t hal_host_watchdog_bite(void)
@@ -125,13 +130,13 @@ void hal_irq_enable(void) {}
 
 void hal_time_init(void)
 {
-    tick_at = host_now + (uint64_t)HAL_TICK_US * HOST_CYCLES_PER_US;
+    tick_at = hal_host_now() + (uint64_t)HAL_TICK_US * HOST_CYCLES_PER_US;
 }
 
 void hal_wake_at(uint32_t t_us)
 {
     uint32_t ahead_us = (t_us - hal_time_us()) % ALARM_RANGE_US;
-    uint64_t begun_at = host_now - host_now % HOST_CYCLES_PER_US; /* start of the current microsecond */
+    uint64_t begun_at = hal_host_now() - hal_host_now() % HOST_CYCLES_PER_US; /* start of the current microsecond */
     alarm_at = begun_at + (uint64_t)(ahead_us == 0 ? ALARM_RANGE_US : ahead_us) * HOST_CYCLES_PER_US;
     if ((hal_time_us() - t_us) % ALARM_RANGE_US < HAL_WAKE_LATE_US) {
         hal_wake();
@@ -145,7 +150,7 @@ void hal_watchdog_start(void)
 
 void hal_watchdog_feed(void)
 {
-    watchdog_at = host_now + (uint64_t)HAL_WATCHDOG_MS * 1000u * HOST_CYCLES_PER_US;
+    watchdog_at = hal_host_now() + (uint64_t)HAL_WATCHDOG_MS * 1000u * HOST_CYCLES_PER_US;
 }
 
 void hal_watchdog_note(uint8_t new_note)
@@ -177,7 +182,7 @@ void hal_strap_init(void) {}
 
 bool hal_strap_low(void)
 {
-    return hal_host_faults.strap_low;
+    return hal_host_faults()->strap_low;
 }
 
 void hal_led_init(void) {}

@@ -42,11 +42,14 @@ typedef struct {
     uint8_t lap_step;            /* added to hal_time_lap at each call: main is slow */
 } hal_host_faults_t;
 
-/* The processor clock that the firmware sees (HAL_CPU_HZ); power-on sets it to HAL_HOST_HZ. */
-extern uint32_t hal_host_cpu_hz;
+/* A test sets the processor clock that the firmware sees (HAL_CPU_HZ); power-on sets it to HAL_HOST_HZ. */
+void hal_host_set_cpu_hz(uint32_t hz);
 
-extern adxl345_model_t hal_host_sensor;
-extern hal_host_faults_t hal_host_faults;
+/* The sensor, for a test to cut its supply and to read or change its registers; power-on makes it a fresh one. */
+adxl345_model_t *hal_host_sensor(void);
+
+/* The faults in force, for a test to set; power-on clears them. */
+hal_host_faults_t *hal_host_faults(void);
 
 /* Power-on of board and sensor. The stream may be NULL (no samples). */
 void hal_host_begin(const hal_host_config_t *config, const stream_t *stream, bool loop);

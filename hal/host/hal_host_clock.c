@@ -6,26 +6,41 @@
 /* A pass of main takes time too; otherwise a main loop that asks for another pass would stop the clock. */
 enum { PASS_CYCLES = 320 };
 
-uint64_t host_now;
-hal_host_config_t host_config;
-hal_host_faults_t hal_host_faults;
-
+static uint64_t now; /* cycles since power-on */
+static hal_host_config_t config;
+static hal_host_faults_t faults;
 static const host_part_t *parts;
 static size_t parts_count;
 static bool wake_wanted;
 static bool stopped;
 
-void host_clock_begin(const host_part_t *board, size_t count)
+void host_clock_begin(const hal_host_config_t *wanted, const host_part_t *board, size_t count)
 {
+    config = *wanted;
     parts = board;
     parts_count = count;
-    host_now = 0;
+    now = 0;
+}
+
+const hal_host_config_t *host_config(void)
+{
+    return &config;
+}
+
+hal_host_faults_t *hal_host_faults(void)
+{
+    return &faults;
 }
 
 void host_clock_reset(void)
 {
     wake_wanted = false;
     stopped = false;
+}
+
+void host_clock_spend(uint64_t cycles)
+{
+    now += cycles;
 }
 
 void host_clock_stop(void)
@@ -35,17 +50,17 @@ void host_clock_stop(void)
 
 uint64_t hal_host_now(void)
 {
-    return host_now;
+    return now;
 }
 
 double hal_host_now_ms(void)
 {
-    return (double)host_now / (1000.0 * HOST_CYCLES_PER_US);
+    return (double)now / (1000.0 * HOST_CYCLES_PER_US);
 }
 
 uint32_t hal_time_us(void)
 {
-    return (uint32_t)(host_config.time_start_us + host_now / HOST_CYCLES_PER_US);
+    return (uint32_t)(config.time_start_us + now / HOST_CYCLES_PER_US);
 }
 
 uint16_t hal_time_count_isr(void)
@@ -62,7 +77,7 @@ void hal_time_stamp_isr(volatile uint32_t *t_us, uint16_t count)
 uint8_t hal_time_lap(void)
 {
     static uint8_t lap;
-    lap = (uint8_t)(lap + hal_host_faults.lap_step);
+    lap = (uint8_t)(lap + faults.lap_step);
     return lap;
 }
 
@@ -74,7 +89,7 @@ void hal_wake(void)
 static void run_due_events(void)
 {
     for (size_t i = 0; i < parts_count; i++) {
-        if (parts[i].next == NULL || parts[i].next() <= host_now) {
+        if (parts[i].next == NULL || parts[i].next() <= now) {
             parts[i].step();
         }
     }
@@ -92,17 +107,17 @@ static uint64_t next_event(void)
 
 static void go_to(uint64_t at)
 {
-    host_now = at > host_now ? at : host_now;
+    now = at > now ? at : now;
     run_due_events();
 }
 
 void hal_sleep_until_wake(void)
 {
-    uint64_t pass_end = host_now + PASS_CYCLES;
+    uint64_t pass_end = now + PASS_CYCLES;
     while (next_event() <= pass_end) {
         go_to(next_event());
     }
-    host_now = pass_end;
+    now = pass_end;
     while (!wake_wanted) {
         go_to(next_event());
         if (stopped) {

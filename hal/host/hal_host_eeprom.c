@@ -71,10 +71,10 @@ bool hal_eeprom_ready(void)
     if (cut.came) {
         return false;
     }
-    if (host_now >= ready_at) {
+    if (hal_host_now() >= ready_at) {
         return true;
     }
-    host_now += POLL_CYCLES;
+    host_clock_spend(POLL_CYCLES);
     return false;
 }
 
@@ -109,5 +109,5 @@ void hal_eeprom_write_start(uint16_t address, uint8_t value)
     cut.writes_left -= cut.writes_left != 0 ? 1u : 0u;
     writes[address]++;
     cells[address] = outcome(address, value);
-    ready_at = host_now + (uint64_t)WRITE_US * HOST_CYCLES_PER_US;
+    ready_at = hal_host_now() + (uint64_t)WRITE_US * HOST_CYCLES_PER_US;
 }

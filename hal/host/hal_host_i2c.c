@@ -21,7 +21,7 @@ static uint32_t hand_stops;
 void host_i2c_begin(void)
 {
     if (i2c.in_transfer) {
-        adxl345_model_stop(&hal_host_sensor);
+        adxl345_model_stop(hal_host_sensor());
     }
     i2c.enabled = false;
     i2c.in_transfer = false;
@@ -41,22 +41,22 @@ void host_i2c_power_on(void)
 
 static bool sda_low(void)
 {
-    return hal_host_faults.sda_low || hal_host_faults.hang_clocks != 0;
+    return hal_host_faults()->sda_low || hal_host_faults()->hang_clocks != 0;
 }
 
 uint64_t host_i2c_next(void)
 {
-    if (hal_host_faults.scl_low || sda_low()) {
+    if (hal_host_faults()->scl_low || sda_low()) {
         return HOST_NEVER;
     }
-    uint64_t stop_at = hal_host_faults.stop_stuck ? HOST_NEVER : i2c.stop_at;
+    uint64_t stop_at = hal_host_faults()->stop_stuck ? HOST_NEVER : i2c.stop_at;
     return i2c.done_at < stop_at ? i2c.done_at : stop_at;
 }
 
 static void give(command_t command, unsigned bits)
 {
     i2c.command = command;
-    uint64_t from = i2c.stop_pending ? i2c.stop_at : host_now;
+    uint64_t from = i2c.stop_pending ? i2c.stop_at : hal_host_now();
     i2c.done_at = from + (uint64_t)bits * i2c.bit_cycles;
 }
 
@@ -76,17 +76,17 @@ void hal_i2c_disable(void)
 
 static uint8_t clock_by_hand(void)
 {
-    if (hal_host_faults.scl_low) {
+    if (hal_host_faults()->scl_low) {
         return HAL_I2C_SCL_LOW;
     }
     for (unsigned clocks = 0; clocks < CLEAR_CLOCKS_MAX; clocks++) {
         hand_clocks++;
-        if (hal_host_faults.hang_clocks != 0) {
-            hal_host_faults.hang_clocks--;
+        if (hal_host_faults()->hang_clocks != 0) {
+            hal_host_faults()->hang_clocks--;
         }
         if (!sda_low()) {
             hand_stops++;
-            adxl345_model_stop(&hal_host_sensor);
+            adxl345_model_stop(hal_host_sensor());
             return HAL_I2C_FREE;
         }
     }
@@ -96,8 +96,8 @@ static uint8_t clock_by_hand(void)
 uint8_t hal_i2c_clear(void)
 {
     uint8_t lines = clock_by_hand();
-    if (host_config.on_bus_clear != NULL) {
-        host_config.on_bus_clear();
+    if (host_config()->on_bus_clear != NULL) {
+        host_config()->on_bus_clear();
         host_drdy_serve();
     }
     return lines;
@@ -140,7 +140,7 @@ void hal_i2c_stop(void)
     i2c.command = COMMAND_NONE;
     i2c.done_at = HOST_NEVER;
     i2c.stop_pending = true;
-    i2c.stop_at = host_now + i2c.bit_cycles;
+    i2c.stop_at = hal_host_now() + i2c.bit_cycles;
 }
 
 void hal_i2c_release(void)
@@ -163,19 +163,19 @@ bool hal_i2c_stop_pending(void)
 static uint8_t send_step(void)
 {
     if (!i2c.address_next) {
-        uint8_t reg = hal_host_sensor.pointer;
-        uint8_t before = hal_host_sensor.reg[reg];
-        bool is_value = hal_host_sensor.pointer_written;
-        bool ack = adxl345_model_write(&hal_host_sensor, i2c.data);
-        if (is_value && reg != 0 && reg == hal_host_faults.write_lost_register) {
-            hal_host_sensor.reg[reg] = before;
+        uint8_t reg = hal_host_sensor()->pointer;
+        uint8_t before = hal_host_sensor()->reg[reg];
+        bool is_value = hal_host_sensor()->pointer_written;
+        bool ack = adxl345_model_write(hal_host_sensor(), i2c.data);
+        if (is_value && reg != 0 && reg == hal_host_faults()->write_lost_register) {
+            hal_host_sensor()->reg[reg] = before;
         }
         host_sensor_check_rate();
         return ack ? HAL_I2C_SENT_ACK : HAL_I2C_SENT_NACK;
     }
     i2c.address_next = false;
     i2c.reading = (i2c.data & 1u) != 0;
-    bool ack = adxl345_model_start(&hal_host_sensor, i2c.data);
+    bool ack = adxl345_model_start(hal_host_sensor(), i2c.data);
     if (i2c.reading) {
         return ack ? HAL_I2C_READ_ADDRESS_ACK : HAL_I2C_READ_ADDRESS_NACK;
     }
@@ -194,11 +194,11 @@ static uint8_t command_step(command_t command)
     case COMMAND_SEND:
         return send_step();
     default: {
-        uint8_t reg = hal_host_sensor.pointer;
-        bool identity = hal_host_faults.id_wrong && reg == 0;
-        uint8_t byte = adxl345_model_read(&hal_host_sensor);
-        if (host_config.on_rx != NULL) {
-            byte = host_config.on_rx(reg, byte);
+        uint8_t reg = hal_host_sensor()->pointer;
+        bool identity = hal_host_faults()->id_wrong && reg == 0;
+        uint8_t byte = adxl345_model_read(hal_host_sensor());
+        if (host_config()->on_rx != NULL) {
+            byte = host_config()->on_rx(reg, byte);
         }
         i2c.data = identity ? 0x00 : byte;
         return command == COMMAND_RECEIVE_ACK ? HAL_I2C_RECEIVED_ACK : HAL_I2C_RECEIVED_NACK;
@@ -208,22 +208,22 @@ static uint8_t command_step(command_t command)
 
 void host_i2c_step(void)
 {
-    if (i2c.stop_at <= host_now && !hal_host_faults.stop_stuck) {
+    if (i2c.stop_at <= hal_host_now() && !hal_host_faults()->stop_stuck) {
         i2c.stop_at = HOST_NEVER;
         i2c.stop_pending = false;
         i2c.in_transfer = false;
-        adxl345_model_stop(&hal_host_sensor);
+        adxl345_model_stop(hal_host_sensor());
     }
-    if (i2c.done_at > host_now) {
+    if (i2c.done_at > hal_host_now()) {
         return;
     }
     command_t command = i2c.command;
     i2c.command = COMMAND_NONE;
     i2c.done_at = HOST_NEVER;
-    if (hal_host_faults.next_status >= 0 && hal_host_faults.status_skip-- == 0) {
-        hal_host_faults.status_skip = 0;
-        i2c.status = (uint8_t)hal_host_faults.next_status;
-        hal_host_faults.next_status = -1;
+    if (hal_host_faults()->next_status >= 0 && hal_host_faults()->status_skip-- == 0) {
+        hal_host_faults()->status_skip = 0;
+        i2c.status = (uint8_t)hal_host_faults()->next_status;
+        hal_host_faults()->next_status = -1;
     } else {
         i2c.status = command_step(command);
     }

@@ -18,11 +18,13 @@ typedef struct {
 } host_part_t;
 
 /* hal_host_clock.c: time, and the sleep during which it passes */
-extern uint64_t host_now; /* cycles since power-on */
-extern hal_host_config_t host_config;
-/* These parts, in this order if several are due; the table stays the caller's. */
-void host_clock_begin(const host_part_t *parts, size_t count);
+/* Power-on with a copy of this configuration; these parts, in this order if several are due, stay the caller's. */
+void host_clock_begin(const hal_host_config_t *config, const host_part_t *parts, size_t count);
+/* What host_clock_begin got, for the parts to read. */
+const hal_host_config_t *host_config(void);
 void host_clock_reset(void);
+/* Main itself takes this long: what becomes due meanwhile waits for its sleep. */
+void host_clock_spend(uint64_t cycles);
 /* Time stops until host_clock_reset, and a sleep ends at once. */
 void host_clock_stop(void);
 

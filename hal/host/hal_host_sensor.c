@@ -6,8 +6,7 @@
 
 #define TURN_ON_US 1100.0 /* data sheet p. 5: first data one period and 1.1 ms after Measure */
 
-adxl345_model_t hal_host_sensor;
-
+static adxl345_model_t sensor;
 static const stream_t *source;
 static feed_t feed;
 static double odr_hz;
@@ -37,7 +36,7 @@ void hal_host_drdy_edge(void)
 static void pin_changed(void *owner, unsigned pin, bool high)
 {
     (void)owner;
-    if (pin == 1 && high && heard() && !hal_host_faults.int1_cut && !hal_host_faults.int1_high) {
+    if (pin == 1 && high && heard() && !hal_host_faults()->int1_cut && !hal_host_faults()->int1_high) {
         drdy_edge = true;
     }
 }
@@ -91,22 +90,27 @@ bool hal_drdy_high(void)
     if (hal_drdy_flickers()) {
         return false;
     }
-    return hal_host_faults.int1_high || (hal_host_sensor.pin_high[1] && !hal_host_faults.int1_cut);
+    return hal_host_faults()->int1_high || (sensor.pin_high[1] && !hal_host_faults()->int1_cut);
 }
 
 static void latched(void *owner, const int16_t lsb[3])
 {
     (void)owner;
-    if (host_config.on_latched != NULL) {
-        host_config.on_latched(host_now / HOST_CYCLES_PER_US, row_latched, lsb);
+    if (host_config()->on_latched != NULL) {
+        host_config()->on_latched(hal_host_now() / HOST_CYCLES_PER_US, row_latched, lsb);
     }
+}
+
+adxl345_model_t *hal_host_sensor(void)
+{
+    return &sensor;
 }
 
 void host_sensor_begin(const stream_t *stream, bool loop)
 {
-    adxl345_model_init(&hal_host_sensor);
-    hal_host_sensor.pin_changed = pin_changed;
-    hal_host_sensor.latched = latched;
+    adxl345_model_init(&sensor);
+    sensor.pin_changed = pin_changed;
+    sensor.latched = latched;
     source = stream;
     feed = (feed_t){ .stream = stream, .loop = loop };
     odr_hz = 0.0;
@@ -115,7 +119,7 @@ void host_sensor_begin(const stream_t *stream, bool loop)
 
 static double period_cycles(void)
 {
-    return (double)HAL_HOST_HZ / (odr_hz * (1.0 + host_config.ppm * 1e-6));
+    return (double)HAL_HOST_HZ / (odr_hz * (1.0 + host_config()->ppm * 1e-6));
 }
 
 uint64_t host_sensor_next(void)
@@ -125,16 +129,16 @@ uint64_t host_sensor_next(void)
 
 void host_sensor_check_rate(void)
 {
-    double now_hz = adxl345_model_odr_hz(&hal_host_sensor);
+    double now_hz = adxl345_model_odr_hz(&sensor);
     bool unchanged = now_hz >= odr_hz && now_hz <= odr_hz;
     if (unchanged) {
         return;
     }
     odr_hz = now_hz;
     if (odr_hz > 0.0) {
-        next_tick = (double)host_now + period_cycles() + TURN_ON_US * HOST_CYCLES_PER_US;
+        next_tick = (double)hal_host_now() + period_cycles() + TURN_ON_US * HOST_CYCLES_PER_US;
         if (source != NULL) {
-            feed_set_rate(&feed, source, odr_hz, host_now / HOST_CYCLES_PER_US);
+            feed_set_rate(&feed, source, odr_hz, hal_host_now() / HOST_CYCLES_PER_US);
         }
     }
 }
@@ -148,12 +152,12 @@ void host_sensor_step(void)
     }
     size_t row = 0;
     int16_t lsb[3];
-    switch (feed_tick(&feed, host_now / HOST_CYCLES_PER_US, &row)) {
+    switch (feed_tick(&feed, hal_host_now() / HOST_CYCLES_PER_US, &row)) {
     case FEED_SAMPLE:
         row_latched = row;
         memcpy(lsb, source->rows[row].lsb, sizeof lsb);
         feed_vary(&feed, lsb);
-        (void)adxl345_model_tick(&hal_host_sensor, lsb);
+        (void)adxl345_model_tick(&sensor, lsb);
         break;
     case FEED_NOTHING:
         break;

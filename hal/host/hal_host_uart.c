@@ -59,7 +59,7 @@ void hal_host_type(const char *text)
     if (typed_next == typed_length) {
         typed_next = 0;
         typed_length = 0;
-        rx_at = host_now + byte_cycles;
+        rx_at = hal_host_now() + byte_cycles;
     }
     if (typed_length + length > TYPED_MAX) {
         abort();
@@ -70,7 +70,7 @@ void hal_host_type(const char *text)
 
 uint64_t host_uart_next(void)
 {
-    uint64_t tx_next = hal_host_faults.tx_stuck ? HOST_NEVER : tx_at;
+    uint64_t tx_next = hal_host_faults()->tx_stuck ? HOST_NEVER : tx_at;
     return tx_next < rx_at ? tx_next : rx_at;
 }
 
@@ -85,7 +85,7 @@ static void receive(uint8_t byte)
 {
     hal_wake();
     rx_count++;
-    unsigned every = hal_host_faults.corrupt_rx_every;
+    unsigned every = hal_host_faults()->corrupt_rx_every;
     bool framing_error = every != 0 && rx_count % every == 0;
     if (hal_ring_room(&rx, RX_MASK) == 0) {
         count_lost();
@@ -102,21 +102,21 @@ static void receive(uint8_t byte)
 
 void host_uart_step(void)
 {
-    if (tx_at <= host_now && !hal_host_faults.tx_stuck) {
+    if (tx_at <= hal_host_now() && !hal_host_faults()->tx_stuck) {
         if (hal_ring_empty(&tx)) {
             tx_at = HOST_NEVER;
             tx_shifting = false;
         } else {
             uint8_t byte = hal_ring_take(&tx, tx_buffer, TX_MASK);
-            if (host_config.on_tx != NULL) {
-                host_config.on_tx(byte);
+            if (host_config()->on_tx != NULL) {
+                host_config()->on_tx(byte);
             }
-            tx_at = host_now + byte_cycles;
+            tx_at = hal_host_now() + byte_cycles;
         }
     }
-    if (rx_at <= host_now) {
+    if (rx_at <= hal_host_now()) {
         receive((uint8_t)typed[typed_next++]);
-        rx_at = typed_next < typed_length ? host_now + byte_cycles : HOST_NEVER;
+        rx_at = typed_next < typed_length ? hal_host_now() + byte_cycles : HOST_NEVER;
     }
 }
 
@@ -144,7 +144,7 @@ void hal_uart_tx_commit(void)
     hal_ring_commit(&tx);
     if (!tx_shifting && !hal_ring_empty(&tx)) {
         tx_shifting = true;
-        tx_at = host_now;
+        tx_at = hal_host_now();
     }
 }
 

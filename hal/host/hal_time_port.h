@@ -4,9 +4,10 @@
 
 #include <stdint.h>
 
-#define HAL_CPU_HZ hal_host_cpu_hz
+#define HAL_CPU_HZ hal_host_cpu_hz()
 #define HAL_LAP_US 64u
 
-extern uint32_t hal_host_cpu_hz;
+/* What the firmware reads as HAL_CPU_HZ. */
+uint32_t hal_host_cpu_hz(void);
 
 #endif

@@ -23,12 +23,12 @@ TEST(test_configures_as_designed)
     adxl345_start(&at_100_hz);
     rig_run_ms(50);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-    TEST_ASSERT_EQUAL_HEX8(0x0A, hal_host_sensor.reg[ADXL345_BW_RATE]);
-    TEST_ASSERT_EQUAL_HEX8(0x0B, hal_host_sensor.reg[ADXL345_DATA_FORMAT]);
-    TEST_ASSERT_EQUAL_HEX8(0x8A, hal_host_sensor.reg[ADXL345_FIFO_CTL]);
-    TEST_ASSERT_EQUAL_HEX8(0x80, hal_host_sensor.reg[ADXL345_INT_ENABLE]);
-    TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor.reg[ADXL345_INT_MAP]);
-    TEST_ASSERT_EQUAL_HEX8(0x08, hal_host_sensor.reg[ADXL345_POWER_CTL]);
+    TEST_ASSERT_EQUAL_HEX8(0x0A, hal_host_sensor()->reg[ADXL345_BW_RATE]);
+    TEST_ASSERT_EQUAL_HEX8(0x0B, hal_host_sensor()->reg[ADXL345_DATA_FORMAT]);
+    TEST_ASSERT_EQUAL_HEX8(0x8A, hal_host_sensor()->reg[ADXL345_FIFO_CTL]);
+    TEST_ASSERT_EQUAL_HEX8(0x80, hal_host_sensor()->reg[ADXL345_INT_ENABLE]);
+    TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor()->reg[ADXL345_INT_MAP]);
+    TEST_ASSERT_EQUAL_HEX8(0x08, hal_host_sensor()->reg[ADXL345_POWER_CTL]);
 }
 
 TEST(test_rates_and_ranges_reach_the_registers)
@@ -47,8 +47,8 @@ TEST(test_rates_and_ranges_reach_the_registers)
         adxl345_start(&config);
         rig_run_ms(300);
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-        TEST_ASSERT_EQUAL_HEX8(rates[i].code, hal_host_sensor.reg[ADXL345_BW_RATE]);
-        TEST_ASSERT_EQUAL_HEX8(ranges[i % 4].format, hal_host_sensor.reg[ADXL345_DATA_FORMAT]);
+        TEST_ASSERT_EQUAL_HEX8(rates[i].code, hal_host_sensor()->reg[ADXL345_BW_RATE]);
+        TEST_ASSERT_EQUAL_HEX8(ranges[i % 4].format, hal_host_sensor()->reg[ADXL345_DATA_FORMAT]);
     }
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
 }
@@ -58,18 +58,18 @@ TEST(test_self_test_is_set_and_cleared)
 {
     static const adxl345_config_t with_force = { 1000, 16, true, 0 };
     static const adxl345_part_t unmoved = { { 1.0, 1.0, 1.0 }, { 0, 0, 0 }, { 0, 0, 0 } }; /* as the rig checks */
-    hal_host_sensor.part = unmoved;
+    hal_host_sensor()->part = unmoved;
     adxl345_start(&with_force);
     rig_run_ms(300);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-    TEST_ASSERT_EQUAL_HEX8(0x8B, hal_host_sensor.reg[ADXL345_DATA_FORMAT]);
+    TEST_ASSERT_EQUAL_HEX8(0x8B, hal_host_sensor()->reg[ADXL345_DATA_FORMAT]);
     adxl345_readings_t readings;
     adxl345_readings(&readings);
     TEST_ASSERT_EQUAL_UINT16(0, readings.failed);
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-    TEST_ASSERT_EQUAL_HEX8(0x0B, hal_host_sensor.reg[ADXL345_DATA_FORMAT]);
+    TEST_ASSERT_EQUAL_HEX8(0x0B, hal_host_sensor()->reg[ADXL345_DATA_FORMAT]);
 }
 
 /* Without SELF_TEST the configuration is not what was asked for: READ_BACK, never streaming. */
@@ -78,11 +78,11 @@ TEST(test_a_self_test_bit_that_is_not_kept_is_found)
     static const adxl345_config_t with_force = { 1000, 16, true, 0 };
     adxl345_start(&at_100_hz);
     rig_run_ms(100);
-    hal_host_faults.write_lost_register = ADXL345_DATA_FORMAT;
+    hal_host_faults()->write_lost_register = ADXL345_DATA_FORMAT;
     adxl345_start(&with_force);
     rig_run_ms(300);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_READ_BACK, adxl345_fault());
-    hal_host_faults.write_lost_register = 0;
+    hal_host_faults()->write_lost_register = 0;
 }
 
 TEST(test_refuses_rates_and_ranges_the_chip_lacks)
@@ -106,7 +106,7 @@ TEST(test_stamps_are_those_of_data_ready)
 
 TEST(test_finds_the_alternate_address)
 {
-    hal_host_sensor.address = 0x1D;
+    hal_host_sensor()->address = 0x1D;
     adxl345_start(&at_100_hz);
     rig_run_ms(60);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
@@ -115,11 +115,11 @@ TEST(test_finds_the_alternate_address)
 
 TEST(test_no_sensor_is_named_and_comes_back)
 {
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     adxl345_start(&at_100_hz);
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     rig_run_ms(150);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
@@ -127,7 +127,7 @@ TEST(test_no_sensor_is_named_and_comes_back)
 
 TEST(test_wrong_identity_is_named)
 {
-    hal_host_faults.id_wrong = true;
+    hal_host_faults()->id_wrong = true;
     adxl345_start(&at_100_hz);
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_WRONG_ID, adxl345_fault());
@@ -137,23 +137,23 @@ TEST(test_wrong_identity_is_named)
 
 TEST(test_register_that_does_not_keep_its_value_is_named)
 {
-    hal_host_faults.write_lost_register = ADXL345_BW_RATE;
+    hal_host_faults()->write_lost_register = ADXL345_BW_RATE;
     static const adxl345_config_t at_400_hz = { 4000, 16, false, 0 };
     adxl345_start(&at_400_hz);
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_READ_BACK, adxl345_fault());
-    hal_host_faults.write_lost_register = 0;
+    hal_host_faults()->write_lost_register = 0;
     rig_run_ms(200);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
 
 TEST(test_silent_int1_is_named)
 {
-    hal_host_faults.int1_cut = true;
+    hal_host_faults()->int1_cut = true;
     adxl345_start(&at_100_hz);
     rig_run_ms(200);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
-    hal_host_faults.int1_cut = false;
+    hal_host_faults()->int1_cut = false;
     rig_run_ms(200);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
@@ -161,13 +161,13 @@ TEST(test_silent_int1_is_named)
 /* A reset in the middle of a read leaves the sensor holding SDA until it has been clocked through its byte. */
 TEST(test_slave_hung_in_a_byte_is_clocked_free)
 {
-    hal_host_faults.hang_clocks = 9;
+    hal_host_faults()->hang_clocks = 9;
     adxl345_start(&at_100_hz);
     rig_run_ms(50);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-    hal_host_faults.hang_clocks = 9;
+    hal_host_faults()->hang_clocks = 9;
     rig_run_ms(100);
-    TEST_ASSERT_EQUAL_UINT8(0, hal_host_faults.hang_clocks);
+    TEST_ASSERT_EQUAL_UINT8(0, hal_host_faults()->hang_clocks);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
 
@@ -175,8 +175,8 @@ TEST(test_sensor_power_cycle_is_noticed)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(500);
-    adxl345_model_power(&hal_host_sensor, false);
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), false);
+    adxl345_model_power(hal_host_sensor(), true);
     for (double end_ms = hal_host_now_ms() + 15; adxl345_fault() != ADXL345_FAULT_NO_DATA;) {
         TEST_ASSERT_TRUE(hal_host_now_ms() < end_ms);
         rig_pass();
@@ -240,10 +240,10 @@ static void disturb_bursts(unsigned first_event, unsigned end_event)
             while (hal_drdy_high()) {
                 rig_run_ms(0.1); /* the burst that runs is not the one to disturb */
             }
-            hal_host_faults.status_skip = event;
-            hal_host_faults.next_status = disturbances[s];
+            hal_host_faults()->status_skip = event;
+            hal_host_faults()->next_status = disturbances[s];
             rig_run_ms(25);
-            TEST_ASSERT_EQUAL(-1, hal_host_faults.next_status);
+            TEST_ASSERT_EQUAL(-1, hal_host_faults()->next_status);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
         }
     }
@@ -286,7 +286,7 @@ TEST(test_stop_delivers_the_last_samples_and_stands_by)
     adxl345_start(&at_100_hz);
     rig_run_ms(333);
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(50));
-    TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor.reg[ADXL345_POWER_CTL]);
+    TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor()->reg[ADXL345_POWER_CTL]);
     adxl345_start(&at_100_hz);
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());

@@ -27,8 +27,8 @@ void hal_host_drdy_handler(void);
 
 static uint8_t on_rx(uint8_t reg, uint8_t byte)
 {
-    if (reg == ADXL345_INT_SOURCE && !hal_host_faults.int1_high && hal_host_now_ms() > rises_ms) {
-        hal_host_faults.int1_high = true;
+    if (reg == ADXL345_INT_SOURCE && !hal_host_faults()->int1_high && hal_host_now_ms() > rises_ms) {
+        hal_host_faults()->int1_high = true;
         hal_host_drdy_handler();
     }
     return reg == ADXL345_FIFO_STATUS ? byte ^ count_flip : byte;
@@ -52,12 +52,12 @@ static void stream_for_ms(double ms)
 static void transfer_without_end(void)
 {
     adxl345_poll(hal_time_us()); /* DEVID is asked */
-    hal_host_faults.scl_low = true;
+    hal_host_faults()->scl_low = true;
     uint32_t begun_us = hal_time_us();
     while (hal_time_us() - begun_us < 3500) {
         board_driver_sleep();
     }
-    hal_host_faults.scl_low = false;
+    hal_host_faults()->scl_low = false;
     adxl345_poll(hal_time_us());
 }
 
@@ -95,8 +95,8 @@ TEST(test_stop_holds_up_the_reading_by_the_clock)
         setUp();
         stream_for_ms(205);
         adxl345_counters(&before);
-        hal_host_faults.int1_cut = true;
-        hal_host_faults.stop_stuck = true;
+        hal_host_faults()->int1_cut = true;
+        hal_host_faults()->stop_stuck = true;
         while (adxl345_fault() != ADXL345_FAULT_INT1_SILENT) {
             rig_pass();
         }
@@ -105,10 +105,10 @@ TEST(test_stop_holds_up_the_reading_by_the_clock)
         rig_run_ms(2);
         TEST_ASSERT_TRUE(hal_i2c_stop_pending());
         if (comes_out) {
-            hal_host_faults.stop_stuck = false;
+            hal_host_faults()->stop_stuck = false;
         }
         rig_run_ms(10 * PERIOD_MS);
-        hal_host_faults.stop_stuck = false;
+        hal_host_faults()->stop_stuck = false;
         adxl345_counters(&counters);
         uint32_t came = (uint32_t)(rig.taken_count - taken);
         TEST_ASSERT_UINT32_WITHIN(1, 10, came);
@@ -129,7 +129,7 @@ TEST(test_commands_while_samples_are_fetched)
         adxl345_config_t other = { 1000, 4, false, 0 };
         adxl345_start(&other);
         rig_run_ms(1); /* standby is set, samples wait for main and, behind a full queue, in the sensor */
-        TEST_ASSERT_TRUE(hal_host_sensor.fifo_count >= 2);
+        TEST_ASSERT_TRUE(hal_host_sensor()->fifo_count >= 2);
         if (stops) {
             adxl345_stop();
         } else {
@@ -138,8 +138,8 @@ TEST(test_commands_while_samples_are_fetched)
         rig.leaves = false;
         rig_run_ms(5 * PERIOD_MS);
         TEST_ASSERT_EQUAL(stops ? ADXL345_STOPPED : ADXL345_STREAMING, adxl345_phase());
-        TEST_ASSERT_EQUAL_HEX8(stops ? 0x00 : 0x08, hal_host_sensor.reg[ADXL345_POWER_CTL]);
-        TEST_ASSERT_EQUAL_HEX8(0x0B, hal_host_sensor.reg[ADXL345_DATA_FORMAT]);
+        TEST_ASSERT_EQUAL_HEX8(stops ? 0x00 : 0x08, hal_host_sensor()->reg[ADXL345_POWER_CTL]);
+        TEST_ASSERT_EQUAL_HEX8(0x0B, hal_host_sensor()->reg[ADXL345_DATA_FORMAT]);
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(6 * PERIOD_MS));
     }
 }
@@ -152,18 +152,18 @@ TEST(test_failed_read_of_a_sample_that_had_waited)
         stream_for_ms(205);
         rig.leaves = true;
         rig_run_ms(12 * PERIOD_MS); /* more than the queue holds: they wait in the sensor, with one edge for all */
-        TEST_ASSERT_TRUE(hal_host_sensor.fifo_count >= 3);
+        TEST_ASSERT_TRUE(hal_host_sensor()->fifo_count >= 3);
         rig.leaves = false;
         rig_take_all();
         adxl345_poll(hal_time_us());
         board_driver_sleep();
-        while (hal_host_sensor.fifo_count >= 3) {
+        while (hal_host_sensor()->fifo_count >= 3) {
             rig_pass();
         }
-        hal_host_faults.next_status = HAL_I2C_ARBITRATION_LOST;
-        hal_host_faults.status_skip = skip;
+        hal_host_faults()->next_status = HAL_I2C_ARBITRATION_LOST;
+        hal_host_faults()->status_skip = skip;
         rig_run_ms(20 * PERIOD_MS);
-        TEST_ASSERT_EQUAL(-1, hal_host_faults.next_status);
+        TEST_ASSERT_EQUAL(-1, hal_host_faults()->next_status);
         TEST_ASSERT_TRUE_MESSAGE(rig.off_us < 1000u * PERIOD_MS, "a sample has the time of another one");
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(6 * PERIOD_MS));
     }
@@ -191,15 +191,15 @@ TEST(test_int1_that_rises_while_the_sensor_says_it_has_none)
     for (int rises = 0; rises <= 1; rises++) {
         setUp();
         stream_for_ms(205);
-        hal_host_sensor.reg[ADXL345_POWER_CTL] = 0; /* it measures no more */
-        rises_ms = rises ? told_ms[0] - 0.15 : 1e9; /* during the last look */
+        hal_host_sensor()->reg[ADXL345_POWER_CTL] = 0; /* it measures no more */
+        rises_ms = rises ? told_ms[0] - 0.15 : 1e9;    /* during the last look */
         while (adxl345_fault() != ADXL345_FAULT_NO_DATA) {
             rig_pass();
         }
         told_ms[rises] = hal_host_now_ms();
-        TEST_ASSERT_EQUAL(rises, hal_host_faults.int1_high);
+        TEST_ASSERT_EQUAL(rises, hal_host_faults()->int1_high);
         rises_ms = 1e9;
-        hal_host_faults.int1_high = false;
+        hal_host_faults()->int1_high = false;
         rig_run_ms(8 * PERIOD_MS);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
@@ -214,11 +214,11 @@ TEST(test_stop_while_every_read_fails)
     stream_for_ms(205);
     rig.leaves = true;
     adxl345_stop();
-    while ((hal_host_sensor.reg[ADXL345_POWER_CTL] & ADXL345_POWER_MEASURE) != 0) {
+    while ((hal_host_sensor()->reg[ADXL345_POWER_CTL] & ADXL345_POWER_MEASURE) != 0) {
         rig_pass();
     }
-    adxl345_model_power(&hal_host_sensor, false);
-    hal_host_faults.int1_high = true;
+    adxl345_model_power(hal_host_sensor(), false);
+    hal_host_faults()->int1_high = true;
     double begun_ms = hal_host_now_ms();
     unsigned tries = 0;
     while (adxl345_phase() != ADXL345_STOPPED) {
@@ -247,7 +247,7 @@ TEST(test_the_queue_holds_seven_samples)
         TEST_ASSERT_EQUAL_size_t(before + waiting, rig.latched_count);
         unsigned queued = waiting < SLOTS ? waiting : SLOTS - 1;
         TEST_ASSERT_EQUAL_UINT8(queued, adxl345_queued());
-        TEST_ASSERT_EQUAL_UINT8(waiting - queued, hal_host_sensor.fifo_count);
+        TEST_ASSERT_EQUAL_UINT8(waiting - queued, hal_host_sensor()->fifo_count);
     }
     rig.leaves = false;
     rig_run_ms(PERIOD_MS);
@@ -295,12 +295,12 @@ TEST(test_an_edge_while_stopped_is_nobodys)
 {
     stream_for_ms(300);
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(50));
-    hal_host_faults.int1_high = true;
+    hal_host_faults()->int1_high = true;
     hal_host_drdy_handler();
     TEST_ASSERT_FALSE(adxl345_burst_running());
-    hal_host_faults.int1_high = false;
+    hal_host_faults()->int1_high = false;
     rig_run_ms(200);
-    hal_host_faults.int1_cut = true; /* the first sample is read by the clock, with others that give its age */
+    hal_host_faults()->int1_cut = true; /* the first sample is read by the clock, with others that give its age */
     rig.limit_us = 10000 / 2 + 1000;
     size_t before = rig.taken_count;
     adxl345_start(&at_100_hz);

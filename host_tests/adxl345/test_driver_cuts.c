@@ -35,8 +35,8 @@ void setUp(void)
 
 static void disturb(unsigned event, uint8_t status)
 {
-    hal_host_faults.status_skip = event;
-    hal_host_faults.next_status = status;
+    hal_host_faults()->status_skip = event;
+    hal_host_faults()->next_status = status;
 }
 
 /*
@@ -60,7 +60,7 @@ TEST(test_no_status_at_any_event_makes_a_wrong_sample)
             rig_until_pause();
             disturb(event, statuses[s]);
             rig_run_ms(25);
-            TEST_ASSERT_EQUAL(-1, hal_host_faults.next_status);
+            TEST_ASSERT_EQUAL(-1, hal_host_faults()->next_status);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
             /* in its first data byte the sensor has not been read yet, here; a real one may have been */
             TEST_ASSERT_EQUAL_size_t(event > FIRST_DATA_EVENT ? 1 : 0, rig_lost(60));
@@ -89,7 +89,7 @@ static void cut_with_more_in_the_fifo(const adxl345_config_t *config, unsigned w
     while (hal_host_now_ms() < end_ms) {
         rig_pass();
     }
-    TEST_ASSERT_EQUAL(-1, hal_host_faults.next_status);
+    TEST_ASSERT_EQUAL(-1, hal_host_faults()->next_status);
     rig_run_ms(10.0 * period_ms);
     TEST_ASSERT_EQUAL_size_t(event > FIRST_DATA_EVENT ? 1 : 0, rig_lost(60));
 }
@@ -116,7 +116,7 @@ TEST(test_what_follows_a_burst_that_hung_has_its_own_time)
         rig_away(phase); /* a burst takes 300 us */
         bool cut = adxl345_burst_bus_state() == I2C_BUS_BUSY;
         inside += cut;
-        hal_host_faults.hang_clocks = 9;
+        hal_host_faults()->hang_clocks = 9;
         while (adxl345_burst_running()) {
             rig_pass();
         }
@@ -134,15 +134,15 @@ TEST(test_stop_at_any_moment_of_a_recovery_leaves_no_fault)
         begin(100.0);
         adxl345_start(&at_100_hz);
         rig_run_ms(100);
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         rig_run_ms(100);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
-        adxl345_model_power(&hal_host_sensor, true);
+        adxl345_model_power(hal_host_sensor(), true);
         rig_run_ms(phase * 0.2);
         bool recovering = adxl345_fault() != ADXL345_FAULT_NONE;
         adxl345_stop();
         quiesced += recovering && adxl345_phase() == ADXL345_QUIESCING;
-        hal_host_faults.sda_low = (phase & 1u) != 0; /* ends by the deadline of a transfer, else by the drain */
+        hal_host_faults()->sda_low = (phase & 1u) != 0; /* ends by the deadline of a transfer, else by the drain */
         rig_run_ms(60);
         TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
@@ -158,7 +158,7 @@ TEST(test_wires_off_with_int1_high_are_a_missing_sensor)
         adxl345_start(&at_100_hz);
         rig_run_ms(300);
         rig_until_pause();
-        hal_host_sensor.address = 0x2A;
+        hal_host_sensor()->address = 0x2A;
         for (double end_ms = hal_host_now_ms() + 100.0; hal_host_now_ms() < end_ms;) {
             rig_pass();
             adxl345_fault_t fault = adxl345_fault();
@@ -166,7 +166,7 @@ TEST(test_wires_off_with_int1_high_are_a_missing_sensor)
             rig_away(phase); /* a late main: the bus is free again when it looks */
         }
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
-        hal_host_sensor.address = 0x53;
+        hal_host_sensor()->address = 0x53;
         rig_run_ms(100);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
     }
@@ -182,7 +182,7 @@ static void until_a_burst_behind_the_last_refused_one(void)
     adxl345_start(&at_100_hz);
     rig_run_ms(100);
     rig_until_pause();
-    hal_host_sensor.address = 0x2A;
+    hal_host_sensor()->address = 0x2A;
     while (adxl345_burst_failures() < 2) {
         adxl345_poll(hal_time_us());
         rig_away(1);
@@ -213,7 +213,7 @@ TEST(test_a_burst_behind_the_last_refused_one_does_not_hide_it)
     /* the first two, the verdict on the third was this test's; three at each address */
     TEST_ASSERT_EQUAL_UINT16(before.nacks + 2 + 6, after.nacks);
     TEST_ASSERT_EQUAL_UINT16(before.bus_errors, after.bus_errors);
-    hal_host_sensor.address = 0x53;
+    hal_host_sensor()->address = 0x53;
     rig.limit_us = 1000; /* the edge was not that of the sample */
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
@@ -238,7 +238,7 @@ TEST(test_a_sensor_lost_while_it_is_asked_has_no_data)
         rig_away(phase);
         bool inside = adxl345_burst_bus_state() == I2C_BUS_BUSY;
         cut += inside;
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         while (adxl345_fault() == ADXL345_FAULT_NONE) {
             rig_pass();
         }
@@ -253,19 +253,19 @@ TEST(test_stop_and_start_while_the_sensor_is_asked_deliver_first)
     for (unsigned phase = 0; phase < 8; phase++) {
         until_the_sensor_is_asked();
         rig_away(phase);
-        hal_host_faults.int1_cut = false;
+        hal_host_faults()->int1_cut = false;
         TEST_ASSERT_TRUE(hal_drdy_high());
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
-        TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor.reg[ADXL345_POWER_CTL]);
+        TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor()->reg[ADXL345_POWER_CTL]);
 
         static const adxl345_config_t at_50_hz = { 500, 16, false, 0 };
         until_the_sensor_is_asked();
         rig_away(phase);
-        hal_host_faults.int1_cut = false;
+        hal_host_faults()->int1_cut = false;
         adxl345_start(&at_50_hz);
         TEST_ASSERT_EQUAL(ADXL345_QUIESCING, adxl345_phase());
         rig_run_ms(200);
-        TEST_ASSERT_EQUAL_HEX8(0x09, hal_host_sensor.reg[ADXL345_BW_RATE]);
+        TEST_ASSERT_EQUAL_HEX8(0x09, hal_host_sensor()->reg[ADXL345_BW_RATE]);
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
     }
@@ -279,7 +279,7 @@ static bool sensor_away;
 static void whoever_is_there(void)
 {
     bool away = sensor_away && adxl345_driver_state()->address != neighbour;
-    hal_host_sensor.address = away ? 0x2A : adxl345_driver_state()->address;
+    hal_host_sensor()->address = away ? 0x2A : adxl345_driver_state()->address;
 }
 
 static uint8_t neighbour_id(uint8_t reg, uint8_t byte)
@@ -301,7 +301,7 @@ TEST(test_a_neighbour_does_not_keep_the_sensor_out)
             TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
             TEST_ASSERT_EQUAL_HEX8(addresses[i], adxl345_address());
             sensor_away = true;
-            hal_host_sensor.address = 0x2A;
+            hal_host_sensor()->address = 0x2A;
             rig_run_ms(100);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_WRONG_ID, adxl345_fault());
             TEST_ASSERT_EQUAL_HEX8(neighbour, adxl345_foreign_address());

@@ -174,13 +174,13 @@ TEST(test_other_faults_leave_the_clock)
 {
     begin_at(1000, ADXL345_I2C_FALLS_BACK);
     rig_run_ms(300);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     rig_run_ms(2000);
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     rig_run_ms(300);
-    hal_host_faults.sda_low = true;
+    hal_host_faults()->sda_low = true;
     rig_run_ms(2000);
-    hal_host_faults.sda_low = false;
+    hal_host_faults()->sda_low = false;
     rig_run_ms(300);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
     TEST_ASSERT_FALSE(slow());

@@ -53,7 +53,7 @@ TEST(test_int1_stuck_high)
         adxl345_start(&config);
         rig_run_ms(20 + 5 * period_ms);
         rig.limit_us = 500;
-        hal_host_faults.int1_high = true;
+        hal_host_faults()->int1_high = true;
         rig_run_ms(3 * period_ms);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
@@ -61,7 +61,7 @@ TEST(test_int1_stuck_high)
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
         adxl345_readings(&readings);
         TEST_ASSERT_TRUE(readings.empty >= 3);
-        hal_host_faults.int1_high = false;
+        hal_host_faults()->int1_high = false;
         rig_run_ms(30 * period_ms);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
         rig_run_ms(5 * period_ms);
@@ -75,14 +75,14 @@ TEST(test_int1_is_trusted_again_after_32_good_readings)
 {
     stream_for_ms(300);
     rig.limit_us = 500;
-    hal_host_faults.int1_high = true;
+    hal_host_faults()->int1_high = true;
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
     size_t before = rig.taken_count + 1; /* the newest is still read with INT1 high */
     while (rig.taken_count < before) {
         rig_pass();
     }
-    hal_host_faults.int1_high = false;
+    hal_host_faults()->int1_high = false;
     for (unsigned passes = 0; rig.taken_count < before + 40 && passes < 20000; passes++) {
         rig_pass();
         TEST_ASSERT_EQUAL(rig.taken_count < before + 32 ? ADXL345_FAULT_INT1_STUCK : ADXL345_FAULT_NONE,
@@ -96,7 +96,7 @@ TEST(test_times_follow_while_int1_is_stuck)
 {
     for (int percent = -9; percent <= 9; percent += 18) {
         stream_for_ms(300);
-        hal_host_faults.int1_high = true;
+        hal_host_faults()->int1_high = true;
         rig.limit_us = 1100; /* by the clock: a millisecond between two looks, and a burst */
         adxl345_period_start((uint16_t)(5000 - percent * 50));
         rig_run_ms(3000);
@@ -111,7 +111,7 @@ TEST(test_times_of_a_slow_sensor_follow_while_int1_is_stuck)
     static const adxl345_config_t at_12_5_hz = { 125, 16, false, 0 };
     rig_begin(12.5, (hal_host_config_t){ .ppm = -50000.0 });
     rig.limit_us = 500;
-    hal_host_faults.int1_high = true;
+    hal_host_faults()->int1_high = true;
     adxl345_start(&at_12_5_hz);
     rig_run_ms(10e3);
     TEST_ASSERT_UINT32_WITHIN(3, 118, (uint32_t)rig.taken_count);
@@ -123,17 +123,17 @@ TEST(test_an_int1_that_was_stuck_once_moves_no_later_stamp)
 {
     stream_for_ms(300);
     rig.limit_us = 1100; /* by the clock: a millisecond between two looks, and a burst */
-    hal_host_faults.int1_high = true;
+    hal_host_faults()->int1_high = true;
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_STUCK, adxl345_fault());
-    hal_host_faults.int1_high = false;
+    hal_host_faults()->int1_high = false;
     rig_run_ms(600);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
     rig_until_pause();
-    hal_host_faults.int1_cut = true;
+    hal_host_faults()->int1_cut = true;
     rig_run_ms(60);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
-    hal_host_faults.int1_cut = false;
+    hal_host_faults()->int1_cut = false;
     rig_run_ms(60);
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
 }
@@ -143,15 +143,15 @@ TEST(test_int1_stuck_high_on_a_sensor_without_data)
 {
     stream_for_ms(300);
     rig.limit_us = 500;
-    hal_host_faults.int1_high = true;
-    hal_host_sensor.reg[ADXL345_POWER_CTL] = 0;
+    hal_host_faults()->int1_high = true;
+    hal_host_sensor()->reg[ADXL345_POWER_CTL] = 0;
     for (double end_ms = hal_host_now_ms() + 60; adxl345_fault() != ADXL345_FAULT_NO_DATA;) {
         TEST_ASSERT_TRUE(hal_host_now_ms() < end_ms);
         rig_pass();
     }
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-    hal_host_faults.int1_high = false;
+    hal_host_faults()->int1_high = false;
     rig_run_ms(400);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
@@ -163,7 +163,7 @@ TEST(test_what_was_shown_before_the_first_sample_is_none)
     TEST_ASSERT_TRUE(rig.last_x > 8);
     hal_host_reset_mcu(1);
     rig_reset();
-    hal_host_faults.int1_high = true;
+    hal_host_faults()->int1_high = true;
     rig.limit_us = 500;
     size_t before = rig.taken_count;
     adxl345_start(&at_100_hz);
@@ -180,9 +180,9 @@ TEST(test_edges_for_nothing_bring_no_sample)
     for (unsigned i = 0; i < 500; i++) {
         rig_run_ms(1.3);
         if (!hal_drdy_high()) {
-            hal_host_faults.int1_high = true;
+            hal_host_faults()->int1_high = true;
             hal_host_drdy_handler();
-            hal_host_faults.int1_high = false;
+            hal_host_faults()->int1_high = false;
         }
     }
     adxl345_readings_t readings;
@@ -210,7 +210,7 @@ TEST(test_a_sample_is_not_older_than_the_sensor_was_empty)
         rig_away(4160 + phase); /* 83.2 ms or more; a period is 84.2 */
         adxl345_readings(&before);
         rig.limit_us = 500;
-        hal_host_faults.int1_high = true;
+        hal_host_faults()->int1_high = true;
         hal_host_drdy_handler();
         while (rig.taken_count == 3) {
             rig_pass();
@@ -287,7 +287,7 @@ TEST(test_eight_edges_are_too_many_to_be_believed_again)
         for (unsigned ticks = 1; ticks < DEAF_TICKS; ticks++) {
             run_until_tick();
         }
-        hal_host_faults.int1_cut = true; /* no edge of a sample is among them */
+        hal_host_faults()->int1_cut = true; /* no edge of a sample is among them */
         rig_edges(count);
         run_until_tick();
         TEST_ASSERT_EQUAL(count >= LIMIT_EDGES_AGAIN, hal_drdy_flickers());
@@ -307,16 +307,16 @@ TEST(test_an_int1_that_flickers_is_not_heard)
         rig.limit_us = (uint32_t)(1000 * period_ms); /* of what an edge of the noise has read */
         double begun_ms = hal_host_now_ms();
         for (unsigned pass = 0; hal_host_now_ms() < begun_ms + 1000 + 10 * period_ms; pass++) {
-            hal_host_faults.int1_high = pass % 2 != 0;
-            hal_host_faults.int1_cut = !hal_host_faults.int1_high;
+            hal_host_faults()->int1_high = pass % 2 != 0;
+            hal_host_faults()->int1_cut = !hal_host_faults()->int1_high;
             rig_edges(5);
             rig_pass();
             if (hal_host_now_ms() > begun_ms + 10 + 3 * period_ms) {
                 TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_FLICKERS, adxl345_fault());
             }
         }
-        hal_host_faults.int1_high = false;
-        hal_host_faults.int1_cut = false;
+        hal_host_faults()->int1_high = false;
+        hal_host_faults()->int1_cut = false;
         rig_run_ms(300 + 3 * period_ms);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(60 + 3 * period_ms));
@@ -332,27 +332,27 @@ TEST(test_overruns_are_counted)
     rig_run_ms(100);
     adxl345_readings(&readings);
     TEST_ASSERT_EQUAL_UINT16(0, readings.overruns);
-    TEST_ASSERT_EQUAL_UINT32(0, hal_host_sensor.overruns);
+    TEST_ASSERT_EQUAL_UINT32(0, hal_host_sensor()->overruns);
     rig.limit_us =
         6000; /* how many are lost is not known; FIFO_STATUS says how many wait: half a period, and a burst */
     stall_ms(500);
     rig_run_ms(100);
     adxl345_readings(&readings);
     TEST_ASSERT_EQUAL_UINT16(1, readings.overruns);
-    TEST_ASSERT_TRUE(hal_host_sensor.overruns > 0);
-    TEST_ASSERT_EQUAL_size_t(hal_host_sensor.overruns, rig_lost(60));
+    TEST_ASSERT_TRUE(hal_host_sensor()->overruns > 0);
+    TEST_ASSERT_EQUAL_size_t(hal_host_sensor()->overruns, rig_lost(60));
 }
 
 /* INT1 comes back to a main that did not look for a while: the sample that the edge brings is older than the edge. */
 TEST(test_int1_comes_back_to_a_full_sensor)
 {
     stream_for_ms(300);
-    hal_host_faults.int1_cut = true;
+    hal_host_faults()->int1_cut = true;
     stall_ms(200);
-    hal_host_faults.int1_cut = false;
+    hal_host_faults()->int1_cut = false;
     hal_host_drdy_handler();
     rig.limit_us = 6000;
     rig_run_ms(300);
-    TEST_ASSERT_EQUAL_UINT32(0, hal_host_sensor.overruns);
+    TEST_ASSERT_EQUAL_UINT32(0, hal_host_sensor()->overruns);
     TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
 }

@@ -39,7 +39,7 @@ static uint8_t late(unsigned at, uint8_t byte)
 /* So many bits were clocked out before the master looked. */
 static uint8_t early(uint8_t reg, uint8_t byte)
 {
-    unsigned next = hal_host_sensor.reg[(reg + 1u) & 0x3Fu];
+    unsigned next = hal_host_sensor()->reg[(reg + 1u) & 0x3Fu];
     return (uint8_t)((unsigned)byte << bits | next >> (8u - bits));
 }
 
@@ -50,7 +50,7 @@ static uint8_t altered(unsigned at, uint8_t reg, uint8_t byte)
     }
     switch (change) {
     case POWER_OFF: /* this byte is the last one */
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         bursts_left = 0;
         return byte;
     case ZEROS:
@@ -160,7 +160,7 @@ TEST(test_supply_lost_at_any_byte_brings_nothing_wrong)
         start_and_change(POWER_OFF, at, 0, 1);
         rig_run_ms(100);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
-        adxl345_model_power(&hal_host_sensor, true);
+        adxl345_model_power(hal_host_sensor(), true);
         rig_run_ms(150);
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
@@ -199,7 +199,7 @@ TEST(test_three_torn_readings_in_a_row_are_a_fault)
         TEST_ASSERT_EQUAL(torn >= 3, told != 0);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-        TEST_ASSERT_EQUAL_HEX8(PATTERN, hal_host_sensor.reg[ADXL345_FIFO_CTL]);
+        TEST_ASSERT_EQUAL_HEX8(PATTERN, hal_host_sensor()->reg[ADXL345_FIFO_CTL]);
         /* configured anew within 3 ms, turned on for 11.1 ms, and no samples meanwhile but those of the fault */
         TEST_ASSERT_EQUAL_size_t(torn, rig_lost(60));
     }
@@ -253,7 +253,7 @@ TEST(test_a_sensor_whose_format_changes_is_configured_anew)
 {
     for (unsigned bit = 0; bit < 8; bit++) {
         start_and_change(NOTHING, 0, 0, 0);
-        hal_host_sensor.reg[ADXL345_DATA_FORMAT] ^= (uint8_t)(1u << bit);
+        hal_host_sensor()->reg[ADXL345_DATA_FORMAT] ^= (uint8_t)(1u << bit);
         size_t taken = rig.taken_count;
         while (adxl345_fault() == ADXL345_FAULT_NONE) {
             pass();
@@ -261,7 +261,7 @@ TEST(test_a_sensor_whose_format_changes_is_configured_anew)
         TEST_ASSERT_TRUE(rig.taken_count <= taken + 1); /* one may have been on its way */
         rig_run_ms(60);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
-        TEST_ASSERT_EQUAL_HEX8(0x0B, hal_host_sensor.reg[ADXL345_DATA_FORMAT]);
+        TEST_ASSERT_EQUAL_HEX8(0x0B, hal_host_sensor()->reg[ADXL345_DATA_FORMAT]);
     }
 }
 

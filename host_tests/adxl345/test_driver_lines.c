@@ -56,7 +56,7 @@ static double ms_until_fault(bool wanted)
 
 static void hold(adxl345_fault_t line, bool low)
 {
-    *(line == ADXL345_FAULT_SCL_LOW ? &hal_host_faults.scl_low : &hal_host_faults.sda_low) = low;
+    *(line == ADXL345_FAULT_SCL_LOW ? &hal_host_faults()->scl_low : &hal_host_faults()->sda_low) = low;
 }
 
 /* A line that is low from the start is seen before any transfer: no deadline is needed. */
@@ -124,7 +124,7 @@ TEST(test_a_line_low_while_configuring_is_named_by_the_deadline)
         begin(100.0);
         adxl345_start(&at_100_hz);
         rig_run_ms(0.02 * phase);
-        bool measures = hal_host_sensor.reg[ADXL345_POWER_CTL] == ADXL345_POWER_MEASURE;
+        bool measures = hal_host_sensor()->reg[ADXL345_POWER_CTL] == ADXL345_POWER_MEASURE;
         hold(ADXL345_FAULT_SDA_LOW, true);
         double took_ms = ms_until_fault(true);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_SDA_LOW, adxl345_fault());
@@ -144,7 +144,7 @@ TEST(test_a_hung_slave_is_freed)
         adxl345_start(&at_100_hz);
         rig_run_ms(100);
         rig_until_pause();
-        hal_host_faults.hang_clocks = clocks;
+        hal_host_faults()->hang_clocks = clocks;
         bool told = false;
         for (double end_ms = hal_host_now_ms() + 30.0; hal_host_now_ms() < end_ms;) {
             rig_pass();
@@ -152,7 +152,7 @@ TEST(test_a_hung_slave_is_freed)
             TEST_ASSERT_NOT_EQUAL(ADXL345_FAULT_BUS, adxl345_fault());
         }
         TEST_ASSERT_EQUAL(clocks > 16, told);
-        TEST_ASSERT_EQUAL_UINT8(0, hal_host_faults.hang_clocks);
+        TEST_ASSERT_EQUAL_UINT8(0, hal_host_faults()->hang_clocks);
         rig_run_ms(60);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
         TEST_ASSERT_TRUE(rig_lost(60) == 0 || told);
@@ -171,14 +171,14 @@ TEST(test_a_stop_that_does_not_get_out)
         adxl345_start(config);
         rig_run_ms(100.0 + 0.3 * phase);
         adxl345_counters(&before);
-        hal_host_faults.stop_stuck = true;
+        hal_host_faults()->stop_stuck = true;
         uint32_t clears_before = clears;
         double begun_ms = hal_host_now_ms();
         while (clears == clears_before && hal_host_now_ms() < begun_ms + 50.0) {
             rig_pass();
         }
         TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms <= 2.0 * period_ms + 3.5);
-        hal_host_faults.stop_stuck = false;
+        hal_host_faults()->stop_stuck = false;
         adxl345_counters(&after);
         TEST_ASSERT_EQUAL_UINT16(before.timeouts + 1, after.timeouts);
         rig_run_ms(30);
@@ -205,7 +205,7 @@ TEST(test_a_busy_bus_is_waited_for_no_longer_than_it_is_busy)
         rig.leaves = (i & 1u) != 0;
         double begun_ms = hal_host_now_ms();
         adxl345_stop();
-        while (hal_host_sensor.reg[ADXL345_POWER_CTL] != 0) {
+        while (hal_host_sensor()->reg[ADXL345_POWER_CTL] != 0) {
             rig_pass();
             TEST_ASSERT_TRUE(hal_host_now_ms() - begun_ms < 0.6);
         }
@@ -233,7 +233,7 @@ TEST(test_a_late_main_is_no_timeout)
         adxl345_counters(&after);
         TEST_ASSERT_EQUAL_UINT16(before.timeouts, after.timeouts);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
-        TEST_ASSERT_EQUAL_HEX8(ADXL345_POWER_MEASURE, hal_host_sensor.reg[ADXL345_POWER_CTL]);
+        TEST_ASSERT_EQUAL_HEX8(ADXL345_POWER_MEASURE, hal_host_sensor()->reg[ADXL345_POWER_CTL]);
     }
 }
 
@@ -251,7 +251,7 @@ TEST(test_silent_int1_is_noticed_in_time_for_the_row)
             while (hal_drdy_high() || adxl345_burst_running()) {
                 rig_pass();
             }
-            hal_host_faults.int1_cut = true;
+            hal_host_faults()->int1_cut = true;
             double took_ms = ms_until_fault(true);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
             TEST_ASSERT_TRUE(took_ms >= 0.2 * period_ms && took_ms <= limit_ms);
@@ -273,7 +273,7 @@ TEST(test_without_int1_samples_are_read_by_the_clock)
         begin(config.rate_dhz / 10.0);
         adxl345_start(&config);
         rig_run_ms(50.0 + 6.0 * period_ms);
-        hal_host_faults.int1_cut = true;
+        hal_host_faults()->int1_cut = true;
         (void)ms_until_fault(true);
         rig_run_ms(20.0 * period_ms);
         size_t latched = rig.latched_count;
@@ -286,7 +286,7 @@ TEST(test_without_int1_samples_are_read_by_the_clock)
         }
         TEST_ASSERT_INT_WITHIN(2, (int)(rig.latched_count - latched), (int)(rig.taken_count - taken));
         TEST_ASSERT_TRUE(rig.off_us <= 1000u * period_ms);
-        hal_host_faults.int1_cut = false;
+        hal_host_faults()->int1_cut = false;
         TEST_ASSERT_TRUE(ms_until_fault(false) <= 2.0 * period_ms);
         rig_run_ms(50.0);
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(60.0 + 2.0 * period_ms));
@@ -298,17 +298,17 @@ TEST(test_without_int1_a_sensor_that_stops_is_noticed)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(200);
-    hal_host_faults.int1_cut = true;
+    hal_host_faults()->int1_cut = true;
     rig_run_ms(200);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     rig_run_ms(20);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     rig_run_ms(200);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-    hal_host_faults.int1_cut = false;
+    hal_host_faults()->int1_cut = false;
     rig_run_ms(30);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }

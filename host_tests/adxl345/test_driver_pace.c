@@ -30,7 +30,7 @@ static void on_bus_clear(void)
     if (sample_comes_while_clearing) {
         sample_comes_while_clearing = false;
         edge_us = hal_time_us();
-        (void)adxl345_model_tick(&hal_host_sensor, lsb);
+        (void)adxl345_model_tick(hal_host_sensor(), lsb);
     }
 }
 
@@ -71,7 +71,7 @@ TEST(test_tries_again_at_a_pause_that_doubles_to_25_ms)
         LIMIT_BACK_OFF_MIN_MS, 10, 20, LIMIT_BACK_OFF_MAX_MS, LIMIT_BACK_OFF_MAX_MS, LIMIT_BACK_OFF_MAX_MS,
         LIMIT_BACK_OFF_MAX_MS
     };
-    hal_host_sensor.powered = false;
+    hal_host_sensor()->powered = false;
     adxl345_start(&at_100_hz);
     double failed_ms = 0.0;
     for (size_t i = 0; i < 7; i++) {
@@ -87,13 +87,13 @@ TEST(test_tries_again_at_a_pause_that_doubles_to_25_ms)
 /* A good sample brings the pace back to 5 ms. */
 TEST(test_a_good_sample_resets_the_pace)
 {
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     RUN_UNTIL(adxl345_phase() == ADXL345_STREAMING, 200);
     rig_run_ms(100);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     RUN_UNTIL(adxl345_phase() == ADXL345_FAULTY, 100);
     double failed_ms = hal_host_now_ms();
     probes = 0;
@@ -111,7 +111,7 @@ TEST(test_a_hung_burst_is_given_up)
     adxl345_counters(&before);
     RUN_UNTIL(!hal_drdy_high() && !adxl345_burst_running(), 50);
     rig_run_ms(2); /* the last STOP is out */
-    hal_host_faults.hang_clocks = 9;
+    hal_host_faults()->hang_clocks = 9;
     rig_until_burst();
     double begun_ms = hal_host_now_ms();
     RUN_UNTIL(!adxl345_burst_running(), 12);
@@ -136,10 +136,10 @@ TEST(test_three_failed_bursts_are_a_fault)
     uint16_t errors_before = counters.bus_errors;
     for (unsigned failed = 1; failed <= LIMIT_TRIES; failed++) {
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
-        hal_host_faults.next_status = HAL_I2C_BUS_ERROR;
-        hal_host_faults.status_skip = 0;
+        hal_host_faults()->next_status = HAL_I2C_BUS_ERROR;
+        hal_host_faults()->status_skip = 0;
         double end_ms = hal_host_now_ms() + 20;
-        while (hal_host_faults.next_status >= 0 && hal_host_now_ms() < end_ms) {
+        while (hal_host_faults()->next_status >= 0 && hal_host_now_ms() < end_ms) {
             pass();
         }
         adxl345_poll(hal_time_us());
@@ -168,7 +168,7 @@ TEST(test_a_first_sample_that_does_not_come_is_a_fault)
         hal_host_begin(&without_samples, NULL, false);
         rig_reset();
         adxl345_start(&config);
-        RUN_UNTIL(hal_host_sensor.reg[ADXL345_POWER_CTL] == ADXL345_POWER_MEASURE, 20);
+        RUN_UNTIL(hal_host_sensor()->reg[ADXL345_POWER_CTL] == ADXL345_POWER_MEASURE, 20);
         double begun_ms = hal_host_now_ms();
         RUN_UNTIL(adxl345_fault() != ADXL345_FAULT_NONE, 300);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_DATA, adxl345_fault());
@@ -186,7 +186,7 @@ TEST(test_a_stop_is_tried_again_for_a_second)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     adxl345_stop();
     unsigned tries = 0;
     double begun_ms = hal_host_now_ms();
@@ -211,7 +211,7 @@ TEST(test_int1_that_rises_while_the_sensor_is_asked_is_no_fault)
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
     rig_until_asked();
-    hal_host_faults.int1_cut = false;
+    hal_host_faults()->int1_cut = false;
     TEST_ASSERT_TRUE(hal_drdy_high());
     rig.limit_us = 4000; /* the edge comes as late as the sensor is asked */
     hal_host_drdy_handler();
@@ -226,13 +226,13 @@ TEST(test_stop_with_a_stuck_bus_stops)
 {
     adxl345_start(&at_100_hz);
     rig_run_ms(300);
-    hal_host_faults.sda_low = true;
+    hal_host_faults()->sda_low = true;
     adxl345_stop();
     TEST_ASSERT_EQUAL(ADXL345_QUIESCING, adxl345_phase());
     RUN_UNTIL(adxl345_phase() == ADXL345_STOPPED, 20);
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
-    hal_host_faults.sda_low = false;
+    hal_host_faults()->sda_low = false;
     adxl345_start(&at_100_hz);
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
@@ -249,13 +249,13 @@ TEST(test_start_and_stop_while_quiescing)
     TEST_ASSERT_EQUAL(ADXL345_QUIESCING, adxl345_phase());
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-    TEST_ASSERT_EQUAL_HEX8(0x0C, hal_host_sensor.reg[ADXL345_BW_RATE]);
+    TEST_ASSERT_EQUAL_HEX8(0x0C, hal_host_sensor()->reg[ADXL345_BW_RATE]);
     adxl345_start(&at_100_hz);
     adxl345_stop();
     adxl345_stop();
     rig_run_ms(50);
     TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
-    TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor.reg[ADXL345_POWER_CTL]);
+    TEST_ASSERT_EQUAL_HEX8(0x00, hal_host_sensor()->reg[ADXL345_POWER_CTL]);
     TEST_ASSERT_EQUAL_size_t(rig.latched_count, rig.taken_count);
 }
 
@@ -268,7 +268,7 @@ TEST(test_drain_that_nobody_empties_ends)
     double begun_ms = hal_host_now_ms();
     double end_ms = begun_ms + 150;
     adxl345_poll(hal_time_us());
-    adxl345_model_tick(&hal_host_sensor, rig.stream.rows[0].lsb);
+    adxl345_model_tick(hal_host_sensor(), rig.stream.rows[0].lsb);
     while (adxl345_phase() != ADXL345_STOPPED && hal_host_now_ms() < end_ms) {
         board_driver_sleep();
         adxl345_poll(hal_time_us());
@@ -325,13 +325,13 @@ TEST(test_an_edge_while_the_bus_is_cleared_starts_no_transfer)
 /* A sensor that still runs from before gives edges while it is being configured: they are not for this driver. */
 TEST(test_edges_before_streaming_are_ignored)
 {
-    adxl345_model_start(&hal_host_sensor, 0x53 << 1);
-    adxl345_model_write(&hal_host_sensor, ADXL345_BW_RATE);
-    adxl345_model_write(&hal_host_sensor, 0x0D);
-    adxl345_model_write(&hal_host_sensor, ADXL345_POWER_MEASURE);
-    adxl345_model_write(&hal_host_sensor, ADXL345_INT_DATA_READY);
-    adxl345_model_stop(&hal_host_sensor);
-    TEST_ASSERT_TRUE(adxl345_model_tick(&hal_host_sensor, rig.stream.rows[7].lsb));
+    adxl345_model_start(hal_host_sensor(), 0x53 << 1);
+    adxl345_model_write(hal_host_sensor(), ADXL345_BW_RATE);
+    adxl345_model_write(hal_host_sensor(), 0x0D);
+    adxl345_model_write(hal_host_sensor(), ADXL345_POWER_MEASURE);
+    adxl345_model_write(hal_host_sensor(), ADXL345_INT_DATA_READY);
+    adxl345_model_stop(hal_host_sensor());
+    TEST_ASSERT_TRUE(adxl345_model_tick(hal_host_sensor(), rig.stream.rows[7].lsb));
     TEST_ASSERT_TRUE(hal_drdy_high());
     rig_run_ms(5);
     TEST_ASSERT_EQUAL_UINT8(0, adxl345_queued());
@@ -346,7 +346,7 @@ TEST(test_edges_before_streaming_are_ignored)
 TEST(test_counters_saturate)
 {
     adxl345_counters_t counters;
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     adxl345_start(&at_100_hz);
     rig_run_ms(1200e3);
     adxl345_counters(&counters);

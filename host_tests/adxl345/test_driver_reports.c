@@ -58,13 +58,13 @@ static adxl345_counters_t counters(void)
 TEST(test_what_the_bus_carries_to_configure)
 {
     adxl345_start(&at_100_hz);
-    for (unsigned passes = 0; hal_host_sensor.reg[ADXL345_INT_ENABLE] == 0 && passes < 1000; passes++) {
+    for (unsigned passes = 0; hal_host_sensor()->reg[ADXL345_INT_ENABLE] == 0 && passes < 1000; passes++) {
         rig_pass();
     }
-    TEST_ASSERT_EQUAL_HEX8(ADXL345_INT_DATA_READY, hal_host_sensor.reg[ADXL345_INT_ENABLE]); /* the last one */
-    TEST_ASSERT_EQUAL_HEX8(0, hal_host_sensor.reg[ADXL345_POWER_CTL]);
+    TEST_ASSERT_EQUAL_HEX8(ADXL345_INT_DATA_READY, hal_host_sensor()->reg[ADXL345_INT_ENABLE]); /* the last one */
+    TEST_ASSERT_EQUAL_HEX8(0, hal_host_sensor()->reg[ADXL345_POWER_CTL]);
     rig_run_ms(5);
-    TEST_ASSERT_EQUAL_HEX8(ADXL345_POWER_MEASURE, hal_host_sensor.reg[ADXL345_POWER_CTL]);
+    TEST_ASSERT_EQUAL_HEX8(ADXL345_POWER_MEASURE, hal_host_sensor()->reg[ADXL345_POWER_CTL]);
     TEST_ASSERT_EQUAL_UINT(1 + 8, bytes_read);
     rig_run_ms(200);
     hal_host_reset_mcu(1); /* the sensor measures on */
@@ -72,7 +72,7 @@ TEST(test_what_the_bus_carries_to_configure)
     adxl345_start(&at_400_hz);
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-    TEST_ASSERT_EQUAL_UINT32(0, hal_host_sensor.writes_while_measuring);
+    TEST_ASSERT_EQUAL_UINT32(0, hal_host_sensor()->writes_while_measuring);
 }
 
 /* Other offsets and interrupts that another program left do not stay. */
@@ -80,11 +80,11 @@ TEST(test_what_another_program_left_is_cleared)
 {
     static const uint8_t cleared[] = { 0x1E, 0x1F, 0x20, 0x2F }; /* OFSX, OFSY, OFSZ, INT_MAP (data sheet p. 23) */
     for (size_t i = 0; i < sizeof cleared; i++) {
-        hal_host_sensor.reg[cleared[i]] = 0xFF;
+        hal_host_sensor()->reg[cleared[i]] = 0xFF;
     }
     stream_for_ms(100);
     for (size_t i = 0; i < sizeof cleared; i++) {
-        TEST_ASSERT_EQUAL_HEX8(0, hal_host_sensor.reg[cleared[i]]);
+        TEST_ASSERT_EQUAL_HEX8(0, hal_host_sensor()->reg[cleared[i]]);
     }
 }
 
@@ -110,20 +110,20 @@ TEST(test_starting_ends_with_the_first_sample)
 TEST(test_interrupted_is_what_failed)
 {
     stream_for_ms(300);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     rig_run_ms(60);
     TEST_ASSERT_TRUE(adxl345_interrupted());
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     rig_run_ms(60);
     TEST_ASSERT_FALSE(adxl345_interrupted());
     uint16_t restarts = counters().restarts;
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     rig_run_ms(60);
     TEST_ASSERT_EQUAL_size_t(0, rig.latched_count - rig.taken_count);
     adxl345_stop();
     rig_run_ms(60);
     TEST_ASSERT_FALSE(adxl345_interrupted());
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     adxl345_start(&at_100_hz);
     rig_run_ms(100);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
@@ -136,9 +136,9 @@ TEST(test_the_measured_period_survives_a_fault)
     begin(100.0, 30000.0); /* 3 % fast: 9,709 us */
     stream_for_ms(300);
     TEST_ASSERT_UINT32_WITHIN(1, 9709, adxl345_period_us());
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     rig_run_ms(100);
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     rig_run_ms(60);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
     TEST_ASSERT_UINT32_WITHIN(1, 9709, adxl345_period_us());
@@ -162,12 +162,12 @@ TEST(test_drained_samples_are_counted_one_by_one)
         uint16_t before = counters().samples_drained;
         rig_run_ms(100);
         TEST_ASSERT_EQUAL_UINT16(before, counters().samples_drained);
-        hal_host_faults.int1_cut = true;
-        for (unsigned left = 20000; hal_host_sensor.fifo_count < held && left != 0; left--) {
+        hal_host_faults()->int1_cut = true;
+        for (unsigned left = 20000; hal_host_sensor()->fifo_count < held && left != 0; left--) {
             rig_away(1);
         }
         rig_away(100); /* 2 ms: all are read before the next one comes */
-        hal_host_faults.int1_cut = false;
+        hal_host_faults()->int1_cut = false;
         hal_host_drdy_handler(); /* the edge is not the sample's */
         rig_run_ms(30);
         uint16_t drained = (uint16_t)(counters().samples_drained - before);
@@ -189,10 +189,10 @@ static uint8_t on_rx_torn(uint8_t reg, uint8_t byte)
 static void fail_bursts(uint8_t status, unsigned times)
 {
     for (; times != 0; times--) {
-        hal_host_faults.next_status = status;
-        hal_host_faults.status_skip = 0;
+        hal_host_faults()->next_status = status;
+        hal_host_faults()->status_skip = 0;
         rig_run_ms(50);
-        TEST_ASSERT_TRUE(hal_host_faults.next_status < 0);
+        TEST_ASSERT_TRUE(hal_host_faults()->next_status < 0);
     }
 }
 
@@ -220,7 +220,7 @@ static void count_everything(void)
     fail_bursts(HAL_I2C_BUS_ERROR, 5);
     for (unsigned times = 0; times < 6; times++) {
         rig_until_pause();
-        hal_host_faults.hang_clocks = 9;
+        hal_host_faults()->hang_clocks = 9;
         rig_run_ms(50);
     }
     torn_left = 2;
@@ -228,13 +228,13 @@ static void count_everything(void)
     rig_away(40000); /* 800 ms: the FIFO fills up */
     rig_run_ms(100);
     for (unsigned times = 0; times < 3; times++) {
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         rig_run_ms(60);
-        adxl345_model_power(&hal_host_sensor, true);
+        adxl345_model_power(hal_host_sensor(), true);
         rig_run_ms(100);
     }
     storms(8);
-    hal_host_faults.int1_high = true;
+    hal_host_faults()->int1_high = true;
     rig_run_ms(500);
 }
 
@@ -302,13 +302,13 @@ TEST(test_doubled_samples_are_two_sensors)
 TEST(test_an_edge_while_the_sensor_is_asked_says_that_int1_is_well)
 {
     stream_for_ms(300);
-    hal_host_sensor.reg[ADXL345_POWER_CTL] = 0;
+    hal_host_sensor()->reg[ADXL345_POWER_CTL] = 0;
     rig_until_asked();
-    hal_host_faults.int1_cut = false;
-    hal_host_sensor.reg[ADXL345_POWER_CTL] = ADXL345_POWER_MEASURE;
+    hal_host_faults()->int1_cut = false;
+    hal_host_sensor()->reg[ADXL345_POWER_CTL] = ADXL345_POWER_MEASURE;
     size_t before = rig.taken_count;
     rig.limit_us = 4000; /* a period after the one before: it comes a quarter late, and the clock asks just then */
-    TEST_ASSERT_TRUE(adxl345_model_tick(&hal_host_sensor, rig.stream.rows[3000].lsb));
+    TEST_ASSERT_TRUE(adxl345_model_tick(hal_host_sensor(), rig.stream.rows[3000].lsb));
     rig_until_taken(before + 1);
     TEST_ASSERT_EQUAL_INT(3000, rig.last_x);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
@@ -323,7 +323,7 @@ TEST(test_a_silent_sensor_is_asked_after_five_quarters_of_a_period)
     for (unsigned phase = 0; phase < 10; phase++) {
         setUp();
         stream_for_ms(300 + phase);
-        hal_host_faults.int1_cut = true;
+        hal_host_faults()->int1_cut = true;
         uint32_t last_us = adxl345_burst_begun_us();
         unsigned passes = 0;
         while (adxl345_fault() == ADXL345_FAULT_NONE && passes < 1000) {

@@ -53,7 +53,7 @@ static void stream_for_ms(double ms)
 /* Main does not look until the sensor holds so many samples. */
 static void away_until_held(unsigned samples)
 {
-    for (unsigned left = 2 * DEPTH * PASSES_PER_PERIOD; hal_host_sensor.fifo_count < samples; left--) {
+    for (unsigned left = 2 * DEPTH * PASSES_PER_PERIOD; hal_host_sensor()->fifo_count < samples; left--) {
         TEST_ASSERT_TRUE_MESSAGE(left != 0, "the sensor never held so many");
         rig_away(1);
     }
@@ -90,11 +90,11 @@ TEST(test_no_sample_waits_longer_than_the_sensor_is_deep)
         stream_for_ms(300);
         uint32_t last_us = next_stamp_us();
         rig_take_all();
-        hal_host_faults.int1_cut = true;
-        hal_host_sensor.reg[ADXL345_POWER_CTL] = 0;
+        hal_host_faults()->int1_cut = true;
+        hal_host_sensor()->reg[ADXL345_POWER_CTL] = 0;
         rig_away(periods * PASSES_PER_PERIOD);
-        hal_host_sensor.reg[ADXL345_POWER_CTL] = ADXL345_POWER_MEASURE;
-        TEST_ASSERT_TRUE(adxl345_model_tick(&hal_host_sensor, rig.stream.rows[3000].lsb));
+        hal_host_sensor()->reg[ADXL345_POWER_CTL] = ADXL345_POWER_MEASURE;
+        TEST_ASSERT_TRUE(adxl345_model_tick(hal_host_sensor(), rig.stream.rows[3000].lsb));
         uint32_t now_us = hal_time_us();
         adxl345_burst_read();
         TEST_ASSERT_TRUE(adxl345_burst_running());
@@ -116,9 +116,9 @@ TEST(test_torn_readings_of_a_full_sensor_do_not_make_the_others_late)
         for (unsigned phase = 0; phase < 10; phase++) {
             setUp();
             stream_for_ms(300);
-            hal_host_faults.int1_cut = true;
+            hal_host_faults()->int1_cut = true;
             rig_away((DEPTH + 5) * PASSES_PER_PERIOD + phase * PASSES_PER_PERIOD / 10u);
-            size_t lost = hal_host_sensor.overruns;
+            size_t lost = hal_host_sensor()->overruns;
             TEST_ASSERT_TRUE(lost > 0);
             torn_left = torn;
             rig.limit_us = PERIOD_US + BURST_US;
@@ -143,13 +143,13 @@ TEST(test_an_edge_counts_more_than_a_nominal_period)
         rig.limit_us = UINT32_MAX; /* those after it have the nominal period */
         adxl345_start(&at_100_hz);
         rig_run_ms(5); /* configured, and the STOP is out */
-        TEST_ASSERT_EQUAL_HEX8(ADXL345_POWER_MEASURE, hal_host_sensor.reg[ADXL345_POWER_CTL]);
+        TEST_ASSERT_EQUAL_HEX8(ADXL345_POWER_MEASURE, hal_host_sensor()->reg[ADXL345_POWER_CTL]);
         TEST_ASSERT_EQUAL_size_t(0, rig.latched_count);
-        hal_host_faults.status_skip = refused ? ADDRESS_EVENT : FIRST_DATA_EVENT - 1;
-        hal_host_faults.next_status = refused ? HAL_I2C_WRITE_ADDRESS_NACK : HAL_I2C_BUS_ERROR;
+        hal_host_faults()->status_skip = refused ? ADDRESS_EVENT : FIRST_DATA_EVENT - 1;
+        hal_host_faults()->next_status = refused ? HAL_I2C_WRITE_ADDRESS_NACK : HAL_I2C_BUS_ERROR;
         away_until_held(held);
         pass_until_taken(1);
-        TEST_ASSERT_EQUAL(-1, hal_host_faults.next_status);
+        TEST_ASSERT_EQUAL(-1, hal_host_faults()->next_status);
         TEST_ASSERT_TRUE_MESSAGE(rig.off_us <= EXACT_US, "the time of its edge was not kept");
     }
 }
@@ -165,10 +165,10 @@ TEST(test_the_edge_of_int1_that_comes_back_is_not_the_samples)
             setUp();
             rig.limit_us = PERIOD_US / 2 + BURST_US;
             stream_for_ms(300);
-            hal_host_faults.int1_cut = true;
+            hal_host_faults()->int1_cut = true;
             away_until_held(held);
             rig_away(phase * PASSES_PER_PERIOD / 10u);
-            hal_host_faults.int1_cut = false;
+            hal_host_faults()->int1_cut = false;
             hal_host_drdy_handler();
             rig_run_ms(20);
             TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
@@ -179,13 +179,13 @@ TEST(test_the_edge_of_int1_that_comes_back_is_not_the_samples)
 /* The sensor has shown the sample whose first byte was cut (the model has not): it is gone from the FIFO. */
 static void take_out_of_the_sensor(void)
 {
-    uint8_t count = hal_host_sensor.fifo_count;
-    adxl345_model_start(&hal_host_sensor, 0x53 << 1);
-    adxl345_model_write(&hal_host_sensor, ADXL345_DATAX0);
-    adxl345_model_start(&hal_host_sensor, (0x53 << 1) | 1);
-    (void)adxl345_model_read(&hal_host_sensor);
-    adxl345_model_stop(&hal_host_sensor);
-    TEST_ASSERT_EQUAL_UINT8(count - 1, hal_host_sensor.fifo_count);
+    uint8_t count = hal_host_sensor()->fifo_count;
+    adxl345_model_start(hal_host_sensor(), 0x53 << 1);
+    adxl345_model_write(hal_host_sensor(), ADXL345_DATAX0);
+    adxl345_model_start(hal_host_sensor(), (0x53 << 1) | 1);
+    (void)adxl345_model_read(hal_host_sensor());
+    adxl345_model_stop(hal_host_sensor());
+    TEST_ASSERT_EQUAL_UINT8(count - 1, hal_host_sensor()->fifo_count);
 }
 
 /*
@@ -196,11 +196,11 @@ TEST(test_a_cut_in_the_first_data_byte_gives_no_stamp_away)
 {
     stream_for_ms(300);
     size_t before = rig.taken_count;
-    hal_host_faults.status_skip = FIRST_DATA_EVENT;
-    hal_host_faults.next_status = HAL_I2C_BUS_ERROR;
+    hal_host_faults()->status_skip = FIRST_DATA_EVENT;
+    hal_host_faults()->next_status = HAL_I2C_BUS_ERROR;
     away_until_held(1);
     rig_away(BURST_US / 20u); /* the STOP is out */
-    TEST_ASSERT_EQUAL(-1, hal_host_faults.next_status);
+    TEST_ASSERT_EQUAL(-1, hal_host_faults()->next_status);
     take_out_of_the_sensor();
     TEST_ASSERT_FALSE(hal_drdy_high());
     away_until_held(1);
@@ -223,14 +223,14 @@ TEST(test_a_sample_after_an_empty_reading_came_when_it_was_due)
         size_t before = rig.taken_count;
         pass_until_taken(before + 1);
         rig_away(tenths * PASSES_PER_PERIOD / 10u);
-        hal_host_faults.int1_high = true;
+        hal_host_faults()->int1_high = true;
         hal_host_drdy_handler();
         rig_away(BURST_US / 20u);
         TEST_ASSERT_EQUAL(READING_EMPTY, adxl345_burst_judge());
         away_until_held(1);
         pass_until_taken(before + 2);
         TEST_ASSERT_TRUE(rig.off_us <= EXACT_US);
-        hal_host_faults.int1_high = false;
+        hal_host_faults()->int1_high = false;
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
     }
 }

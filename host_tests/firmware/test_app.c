@@ -17,7 +17,7 @@ void setUp(void)
 
 void tearDown(void)
 {
-    TEST_ASSERT_EQUAL_MESSAGE(0, hal_host_faults.tx_stuck, "a test left a fault behind");
+    TEST_ASSERT_EQUAL_MESSAGE(0, hal_host_faults()->tx_stuck, "a test left a fault behind");
 }
 
 static void assert_every_latched_sample_has_its_row(size_t allowed_pending)
@@ -234,9 +234,9 @@ TEST(test_rows_without_room_are_dropped_whole_and_told)
 {
     board_start_resting();
     board_run_ms(500);
-    hal_host_faults.tx_stuck = true;
+    hal_host_faults()->tx_stuck = true;
     board_run_ms(150);
-    hal_host_faults.tx_stuck = false;
+    hal_host_faults()->tx_stuck = false;
     board_run_ms(500);
     size_t marked = 0;
     for (size_t i = 0; i < board.row_count; i++) {
@@ -268,7 +268,7 @@ TEST(test_plot_mode_is_labels_only)
     }
     TEST_ASSERT_INT_WITHIN(3, 29, (int)plot_rows);
     size_t before = board.note_count;
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("#", before));
     (void)talk_typed("mode csv", 300);
@@ -312,9 +312,9 @@ TEST(test_changes_at_every_phase_lose_nothing)
 TEST(test_a_line_with_a_lost_byte_is_refused)
 {
     talk_start();
-    hal_host_faults.corrupt_rx_every = 9;
+    hal_host_faults()->corrupt_rx_every = 9;
     (void)talk_typed("every 1000", 100);
-    hal_host_faults.corrupt_rx_every = 0;
+    hal_host_faults()->corrupt_rx_every = 0;
     TEST_ASSERT_EQUAL_UINT(1, settings()->every);
     TEST_ASSERT_EQUAL_STRING("# refused 3: illegal characters", board_last_note());
 }

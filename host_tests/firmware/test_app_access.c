@@ -19,7 +19,7 @@ static uint8_t neighbour; /* address of a device that is no ADXL345; 0: there is
 
 static uint8_t on_rx(uint8_t reg, uint8_t byte)
 {
-    return neighbour != 0 && hal_host_sensor.address == neighbour && reg == ADXL345_DEVID ? NEIGHBOUR_ID : byte;
+    return neighbour != 0 && hal_host_sensor()->address == neighbour && reg == ADXL345_DEVID ? NEIGHBOUR_ID : byte;
 }
 
 void setUp(void)
@@ -41,13 +41,13 @@ static bool failed_once(const char *command, uint8_t status, unsigned skip)
     start();
     board_type(command);
     while (adxl345_phase() == ADXL345_STREAMING) {
-        hal_host_faults.next_status = status;
-        hal_host_faults.status_skip = skip;
+        hal_host_faults()->next_status = status;
+        hal_host_faults()->status_skip = skip;
         board_run_ms(0.02);
     }
     board_run_ms(500);
-    bool failed = hal_host_faults.next_status < 0;
-    hal_host_faults.next_status = -1;
+    bool failed = hal_host_faults()->next_status < 0;
+    hal_host_faults()->next_status = -1;
     return failed;
 }
 
@@ -65,7 +65,7 @@ TEST(test_one_failed_access_in_a_change_of_rate_is_not_noticed)
             for (unsigned skip = 0; skip < 110; skip += 3) {
                 times += failed_once(commands[c], statuses[s], skip);
                 TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault", 0));
-                TEST_ASSERT_EQUAL_DOUBLE(rates_hz[c], adxl345_model_odr_hz(&hal_host_sensor));
+                TEST_ASSERT_EQUAL_DOUBLE(rates_hz[c], adxl345_model_odr_hz(hal_host_sensor()));
                 TEST_ASSERT_UINT32_WITHIN(30, (uint32_t)(1e6 / rates_hz[c]), adxl345_period_us());
                 TEST_ASSERT_TRUE(counted(COUNT_LOST) <= 2);
             }
@@ -81,7 +81,7 @@ TEST(test_one_failed_access_in_a_stop_leaves_no_sensor_awake)
         for (unsigned skip = 0; skip < 8; skip++) {
             times += failed_once("stop", statuses[s], skip);
             TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
-            TEST_ASSERT_EQUAL_DOUBLE(0.0, adxl345_model_odr_hz(&hal_host_sensor));
+            TEST_ASSERT_EQUAL_DOUBLE(0.0, adxl345_model_odr_hz(hal_host_sensor()));
         }
     }
     TEST_ASSERT_TRUE(times >= 15);
@@ -92,9 +92,9 @@ TEST(test_a_fault_in_a_change_of_rate_keeps_no_old_period)
 {
     for (unsigned phase = 0; phase < 20; phase++) {
         start();
-        hal_host_faults.sda_low = true;
+        hal_host_faults()->sda_low = true;
         (void)talk_typed("rate 50", 10.0 + phase * 0.5);
-        hal_host_faults.sda_low = false;
+        hal_host_faults()->sda_low = false;
         board_run_ms(500);
         size_t row = board.row_count;
         uint32_t lost = counted(COUNT_LOST);
@@ -116,24 +116,24 @@ TEST(test_a_stop_behind_refused_transfers_finds_the_sensor)
         snprintf(typed, sizeof typed, "%*s", phase / 2 + 4, "stop");
         start();
         neighbour = phase % 2 == 0 ? 0 : ADXL345_ADDRESS_HIGH;
-        hal_host_sensor.address = phase % 2 == 0 ? 0x2A : ADXL345_ADDRESS_HIGH;
+        hal_host_sensor()->address = phase % 2 == 0 ? 0x2A : ADXL345_ADDRESS_HIGH;
         board_run_ms(100.0);
         board_type(typed);
         while (adxl345_phase() != ADXL345_STOPPED && adxl345_phase() != ADXL345_QUIESCING) {
             board_run_ms(0.01);
         }
-        hal_host_sensor.address = ADXL345_ADDRESS_LOW;
+        hal_host_sensor()->address = ADXL345_ADDRESS_LOW;
         board_run_ms(100);
         TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
-        TEST_ASSERT_EQUAL_DOUBLE(0.0, adxl345_model_odr_hz(&hal_host_sensor));
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, adxl345_model_odr_hz(hal_host_sensor()));
     }
 }
 
 /* The line of this number is low, or both are free again. */
 static void hold(unsigned line, bool low)
 {
-    hal_host_faults.sda_low = low && line == 0;
-    hal_host_faults.scl_low = low && line == 1;
+    hal_host_faults()->sda_low = low && line == 0;
+    hal_host_faults()->scl_low = low && line == 1;
 }
 
 /*
@@ -157,7 +157,7 @@ TEST(test_a_stop_while_a_line_is_low_reaches_the_sensor_later)
         rows = board.row_count;
         hold(phase % 2, false);
         board_run_ms(50);
-        TEST_ASSERT_EQUAL_DOUBLE(0.0, adxl345_model_odr_hz(&hal_host_sensor));
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, adxl345_model_odr_hz(hal_host_sensor()));
         TEST_ASSERT_EQUAL_size_t(rows, board.row_count);
     }
 }
@@ -166,7 +166,7 @@ TEST(test_a_stop_while_a_line_is_low_reaches_the_sensor_later)
 TEST(test_a_stop_that_nobody_answers_is_given_up)
 {
     start();
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     (void)talk_typed("stop", 2500);
     adxl345_counters_t before;
     adxl345_counters_t after;
@@ -184,15 +184,15 @@ TEST(test_a_neighbour_at_the_other_address_does_not_keep_the_sensor_out)
         neighbour = addresses[1 - i];
         stream_t stream = board_noisy_stream(3000, 100.0, 1.5, 3u);
         board_start_with_rx(&stream, on_rx);
-        hal_host_sensor.address = addresses[i];
+        hal_host_sensor()->address = addresses[i];
         board_run_ms(500);
         TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
-        hal_host_sensor.address = neighbour; /* it alone answers */
+        hal_host_sensor()->address = neighbour; /* it alone answers */
         board_run_ms(500);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_WRONG_ID, adxl345_fault());
         TEST_ASSERT_EQUAL_HEX8(neighbour, adxl345_foreign_address());
         TEST_ASSERT_EQUAL_HEX8(NEIGHBOUR_ID, adxl345_foreign_id());
-        hal_host_sensor.address = addresses[i];
+        hal_host_sensor()->address = addresses[i];
         board_run_ms(150);
         TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
         TEST_ASSERT_EQUAL_HEX8(addresses[i], adxl345_address());
@@ -206,12 +206,12 @@ TEST(test_three_refused_bursts_of_a_sensor_that_is_there)
     adxl345_counters_t now;
     start();
     adxl345_counters(&before);
-    hal_host_sensor.address = 0x2A;
+    hal_host_sensor()->address = 0x2A;
     do {
         board_run_ms(0.01);
         adxl345_counters(&now);
     } while (now.nacks - before.nacks < 3);
-    hal_host_sensor.address = ADXL345_ADDRESS_LOW;
+    hal_host_sensor()->address = ADXL345_ADDRESS_LOW;
     board_run_ms(100);
     adxl345_counters(&now);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# fault", 0));
@@ -229,7 +229,7 @@ TEST(test_no_sensor_is_told_when_neither_address_has_answered)
 {
     start();
     size_t before = board.note_count;
-    hal_host_sensor.address = 0x2A;
+    hal_host_sensor()->address = 0x2A;
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1: ", before));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault", before));

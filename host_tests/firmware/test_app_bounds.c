@@ -52,10 +52,10 @@ TEST(test_an_outage_longer_than_the_wrap_of_the_clock)
 {
     talk_start();
     const double minutes_ms = 72.0 * 60e3;
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     double begun_ms = hal_host_now_ms();
     board_run_ms(minutes_ms);
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     board_run_ms(500);
     double reported_ms = 0.0;
     TEST_ASSERT_EQUAL_INT(1, sscanf(board_last_note(), "# fault 1 over: after %lf ms", &reported_ms));
@@ -76,10 +76,10 @@ static double reported_outage_ms(uint32_t seconds)
     talk_start();
     run_until_second(2);
     board_run_ms(500);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     run_until_second(2 + seconds);
     board_run_ms(200);
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     board_run_ms(500);
     double reported_ms = 0.0;
     TEST_ASSERT_EQUAL_INT(1, sscanf(board_last_note(), "# fault 1 over: after %lf ms", &reported_ms));
@@ -113,10 +113,10 @@ TEST(test_a_service_without_time_is_late_by_20_ms_at_most)
 {
     enum { LATE_US = 24200 };
     talk_start();
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(200);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
-    hal_host_faults.lap_step = 13; /* 0.8 ms from look to look: a pass is over before it has begun a piece */
+    hal_host_faults()->lap_step = 13; /* 0.8 ms from look to look: a pass is over before it has begun a piece */
     board_run_ms(30);
     unsigned changes = 0;
     bool was = hal_host_led();
@@ -145,7 +145,7 @@ TEST(test_a_predicted_row_waits_for_a_sample_on_its_way)
     talk_start();
     talk_type("baud 1000000");
     board_run_ms(100);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     size_t first = board.row_count;
     board_run_ms(100);
     while ((board.rows[first].flags & ROW_COASTED) == 0) {
@@ -231,7 +231,7 @@ TEST(test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range)
         board_run_ms(1.0);
     }
     size_t first = board.row_count;
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     (void)talk_typed("range 2", 100);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
     TEST_ASSERT_EQUAL_UINT8(4, adxl345_queued());

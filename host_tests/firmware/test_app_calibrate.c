@@ -61,8 +61,8 @@ static void start_lays(const attitude_t *lays, size_t count, adxl345_part_t part
         }
     }
     board_start(&stream, 0.0, 0);
-    hal_host_sensor.part = part;
-    memcpy(hal_host_sensor.part.self_test_lsb, adxl345_part_typical.self_test_lsb, sizeof part.self_test_lsb);
+    hal_host_sensor()->part = part;
+    memcpy(hal_host_sensor()->part.self_test_lsb, adxl345_part_typical.self_test_lsb, sizeof part.self_test_lsb);
     board_run_ms(300);
 }
 
@@ -291,9 +291,9 @@ TEST(test_cal6_ends_with_the_sensor)
     start_order("0123", 5.0, adxl345_part_typical);
     calibration_t before = settings()->calibration;
     size_t note = talk_typed("cal6", 13000.0);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(100);
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     board_run_ms(5000);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# refused 9: samples lost or settings changed", note));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with(", 3 to go", note));
@@ -348,8 +348,8 @@ TEST(test_cal_finds_offsets)
         adxl345_part_t part = adxl345_part_typical;
         start_lays(&ups[i], 1, part);
         for (int axis = 0; axis < 3; axis++) {
-            hal_host_sensor.part.gain[axis] = settings()->calibration.scale_lsb_per_g_uq6[axis] / 64.0 / 256.0;
-            hal_host_sensor.part.offset_lsb[axis] = offsets[axis];
+            hal_host_sensor()->part.gain[axis] = settings()->calibration.scale_lsb_per_g_uq6[axis] / 64.0 / 256.0;
+            hal_host_sensor()->part.offset_lsb[axis] = offsets[axis];
         }
         board_run_ms(100);
         size_t note = talk_typed("cal", 3000.0);

@@ -18,19 +18,19 @@ TEST(test_alternating_faults_are_told_once_each)
     board_run_ms(500);
     size_t before = board.note_count;
     for (int turn = 0; turn < 10; turn++) {
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         board_run_ms(150);
-        adxl345_model_power(&hal_host_sensor, true);
-        hal_host_faults.id_wrong = true;
+        adxl345_model_power(hal_host_sensor(), true);
+        hal_host_faults()->id_wrong = true;
         board_run_ms(150);
     }
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1: ", before));
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 2: ", before));
-    hal_host_faults.id_wrong = false;
+    hal_host_faults()->id_wrong = false;
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("over: after", before));
     TEST_ASSERT_EQUAL_size_t(before + 3 + board_notes_with("# fault 15: ", before), board.note_count);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(2, board_notes_with("# fault 1: ", before));
 }

@@ -20,7 +20,7 @@ void setUp(void)
 
 void tearDown(void)
 {
-    TEST_ASSERT_EQUAL_MESSAGE(0, hal_host_faults.tx_stuck, "a test left a fault behind");
+    TEST_ASSERT_EQUAL_MESSAGE(0, hal_host_faults()->tx_stuck, "a test left a fault behind");
 }
 
 /* A board at rest that has sent rows for a while; returns how many other lines. */
@@ -42,21 +42,21 @@ static void assert_fault_is_told(const char *words)
 TEST(test_no_sensor_is_told_once)
 {
     board_start_resting();
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     assert_fault_is_told("fault 1: no sensor at 0x53 or 0x1D");
 }
 
 TEST(test_wrong_identity_is_told_once)
 {
     board_start_resting();
-    hal_host_faults.id_wrong = true;
+    hal_host_faults()->id_wrong = true;
     assert_fault_is_told(": DEVID 0x00, not 0xE5");
 }
 
 TEST(test_silent_int1_is_told_once)
 {
     board_start_resting();
-    hal_host_faults.int1_cut = true;
+    hal_host_faults()->int1_cut = true;
     board_run_ms(700);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("INT1 stays low: check INT1 to D2", 0));
     /* read by the clock: rows at the sensor's rate, each of a sample */
@@ -67,7 +67,7 @@ TEST(test_silent_int1_is_told_once)
     for (size_t i = before; i < board.row_count; i++) {
         TEST_ASSERT_EQUAL_UINT(0, board.rows[i].flags & (ROW_FAULT | ROW_COASTED));
     }
-    hal_host_faults.int1_cut = false;
+    hal_host_faults()->int1_cut = false;
     board_run_ms(100);
     TEST_ASSERT_EQUAL_STRING_LEN("# fault 5 over: after ", board_last_note(), 22);
 }
@@ -75,9 +75,9 @@ TEST(test_silent_int1_is_told_once)
 TEST(test_fault_begins_and_ends_with_one_line_each)
 {
     size_t before = start_streaming();
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(2000);
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     board_run_ms(500);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("over: after", before));
     TEST_ASSERT_EQUAL_INT(0, strncmp(board_last_note(), "# fault 1 over: ", 16));
@@ -89,7 +89,7 @@ TEST(test_fault_begins_and_ends_with_one_line_each)
 TEST(test_stop_during_a_fault_does_not_call_it_over)
 {
     (void)start_streaming();
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(300);
     size_t before = talk_typed("stop", 300);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
@@ -113,9 +113,9 @@ TEST(test_stop_at_any_moment_of_a_recovery_is_silent)
 {
     for (unsigned phase = 0; phase < 140; phase++) {
         size_t before = start_streaming();
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         board_run_ms(200);
-        adxl345_model_power(&hal_host_sensor, true);
+        adxl345_model_power(hal_host_sensor(), true);
         board_run_ms(phase * 0.5);
         board_type("stop");
         assert_silent_after_stop(before);
@@ -128,13 +128,13 @@ TEST(test_stop_between_two_attempts_puts_the_sensor_to_rest)
 {
     for (unsigned phase = 0; phase < 60; phase++) {
         size_t before = start_streaming();
-        hal_host_faults.sda_low = true;
+        hal_host_faults()->sda_low = true;
         board_run_ms(40.0 + phase * 0.5);
         TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_SDA_LOW, adxl345_fault());
-        hal_host_faults.sda_low = false;
+        hal_host_faults()->sda_low = false;
         board_type("stop");
         assert_silent_after_stop(before);
-        TEST_ASSERT_EQUAL_DOUBLE(0.0, adxl345_model_odr_hz(&hal_host_sensor));
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, adxl345_model_odr_hz(hal_host_sensor()));
     }
 }
 
@@ -142,7 +142,7 @@ TEST(test_stop_between_two_attempts_puts_the_sensor_to_rest)
 TEST(test_stop_and_go_at_once_during_a_fault_do_not_call_it_over)
 {
     size_t before = start_streaming();
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(300);
     for (int blanks = 0; blanks < 120; blanks++) { /* 87 us each before the commands: 10 ms of phases */
         char typed[160];
@@ -151,7 +151,7 @@ TEST(test_stop_and_go_at_once_during_a_fault_do_not_call_it_over)
     }
     TEST_ASSERT_EQUAL_size_t(120, board_notes_with("# going", before));
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     board_run_ms(300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("over: after", before));
     TEST_ASSERT_EQUAL_UINT(0, board.rows[board.row_count - 1].flags & ROW_FAULT);
@@ -164,7 +164,7 @@ TEST(test_wires_off_are_told_as_a_missing_sensor)
         board_start_resting();
         board_run_ms(500.0 + phase * 0.5);
         size_t before = board.note_count;
-        hal_host_sensor.address = 0x2A;
+        hal_host_sensor()->address = 0x2A;
         board_run_ms(300);
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1: no sensor", before));
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault", before));
@@ -179,8 +179,8 @@ TEST(test_a_line_that_is_low_is_told)
         board_start_resting();
         board_run_ms(500.0 + phase * 0.5);
         size_t before = board.note_count;
-        hal_host_faults.scl_low = scl;
-        hal_host_faults.sda_low = !scl;
+        hal_host_faults()->scl_low = scl;
+        hal_host_faults()->sda_low = !scl;
         double low_ms = hal_host_now_ms();
         while (adxl345_fault() == ADXL345_FAULT_NONE) {
             TEST_ASSERT_TRUE(hal_host_now_ms() - low_ms < 10.0 + 3.5);
@@ -191,8 +191,8 @@ TEST(test_a_line_that_is_low_is_told)
                                                          : "# fault 8: SDA held low: check SDA, SCL",
                                                      before));
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault", before));
-        hal_host_faults.scl_low = false;
-        hal_host_faults.sda_low = false;
+        hal_host_faults()->scl_low = false;
+        hal_host_faults()->sda_low = false;
         board_run_ms(100);
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with(scl ? "# fault 7 over" : "# fault 8 over", before));
     }
@@ -201,7 +201,7 @@ TEST(test_a_line_that_is_low_is_told)
 TEST(test_ten_minutes_without_a_sensor)
 {
     board_start_resting();
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(600e3);
     TEST_ASSERT_EQUAL_UINT(0, (unsigned)hal_host_watchdog_bite());
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault ", 0));
@@ -257,7 +257,7 @@ static void assert_bite(uint8_t stage)
     TEST_ASSERT_TRUE(hal_host_watchdog_bite() != 0);
     TEST_ASSERT_TRUE(bitten_ms - begun_ms <= 300.0);
     *hang_stages_here() = 0;
-    hal_host_faults.tx_stuck = false;
+    hal_host_faults()->tx_stuck = false;
     hal_host_reset_mcu(HAL_RESET_WATCHDOG);
     app_start();
     board_run_ms(100);
@@ -268,7 +268,7 @@ static void assert_bite(uint8_t stage)
 TEST(test_hung_sampling_is_bitten)
 {
     (void)start_streaming();
-    hal_host_faults.int1_cut = true;
+    hal_host_faults()->int1_cut = true;
     *hang_stages_here() = HEALTH_SAMPLING;
     assert_bite(HEALTH_SAMPLING);
 }
@@ -283,6 +283,6 @@ TEST(test_hung_filtering_is_bitten)
 TEST(test_hung_output_is_bitten)
 {
     (void)start_streaming();
-    hal_host_faults.tx_stuck = true;
+    hal_host_faults()->tx_stuck = true;
     assert_bite(HEALTH_OUTPUT);
 }

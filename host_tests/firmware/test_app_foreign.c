@@ -31,7 +31,7 @@ static uint8_t id_at(uint8_t address)
 
 static uint8_t on_rx(uint8_t reg, uint8_t byte)
 {
-    return reg == ADXL345_DEVID && hal_host_sensor.address != real ? id_at(hal_host_sensor.address) : byte;
+    return reg == ADXL345_DEVID && hal_host_sensor()->address != real ? id_at(hal_host_sensor()->address) : byte;
 }
 
 /* One fault was reported, and so. */
@@ -53,7 +53,7 @@ TEST(test_fault_2_names_the_device_that_was_found_at_every_phase)
     for (size_t a = 0; a < sizeof addresses; a++) {
         for (unsigned phase = 0; phase < PHASES; phase++) {
             board_start_with_rx(&stream, on_rx);
-            hal_host_sensor.address = addresses[a];
+            hal_host_sensor()->address = addresses[a];
             board_run_ms(phase);
             (void)talk_typed("status", 100);
             TEST_ASSERT_EQUAL(ADXL345_FAULT_WRONG_ID, adxl345_fault());
@@ -68,7 +68,7 @@ TEST(test_the_device_stays_named_while_the_other_address_is_asked)
     for (size_t a = 0; a < sizeof addresses; a++) {
         unsigned asked_elsewhere = 0;
         board_start_with_rx(&stream, on_rx);
-        hal_host_sensor.address = addresses[a];
+        hal_host_sensor()->address = addresses[a];
         board_run_ms(20);
         for (unsigned step = 0; step < 5000; step++) {
             board_run_ms(0.02);
@@ -84,7 +84,7 @@ TEST(test_the_device_stays_named_while_the_other_address_is_asked)
 static void both_answer_for_ms(unsigned ms)
 {
     for (unsigned step = 0; step < 10 * ms; step++) {
-        hal_host_sensor.address = adxl345_driver_state()->address;
+        hal_host_sensor()->address = adxl345_driver_state()->address;
         board_run_ms(0.1);
     }
 }
@@ -101,7 +101,7 @@ TEST(test_the_device_stays_named_when_another_one_answers_too)
 {
     for (size_t a = 0; a < sizeof addresses; a++) {
         board_start_with_rx(&stream, on_rx);
-        hal_host_sensor.address = addresses[a];
+        hal_host_sensor()->address = addresses[a];
         board_run_ms(20);
         the_device_is(addresses[a]);
         both_answer_for_ms(100);
@@ -115,7 +115,7 @@ TEST(test_the_device_at_the_address_asked_for_is_named)
     static const char *const asked[] = { "address 53", "address 1D" };
     for (size_t a = 0; a < sizeof addresses; a++) {
         board_start_with_rx(&stream, on_rx);
-        hal_host_sensor.address = addresses[1 - a];
+        hal_host_sensor()->address = addresses[1 - a];
         board_run_ms(20);
         the_device_is(addresses[1 - a]);
         board_type(asked[a]);
@@ -133,7 +133,7 @@ TEST(test_fault_2_names_one_of_two_devices_with_its_own_identity)
     for (unsigned phase = 0; phase < PHASES; phase++) {
         board_start_with_rx(&stream, on_rx);
         for (unsigned step = 0; step < 10 * PHASES + 1000; step++) {
-            hal_host_sensor.address = adxl345_driver_state()->address;
+            hal_host_sensor()->address = adxl345_driver_state()->address;
             if (step == 10 * phase) {
                 board_type("status");
             }
@@ -147,14 +147,14 @@ TEST(test_fault_2_names_one_of_two_devices_with_its_own_identity)
 TEST(test_fault_2_names_the_device_after_the_sensor_was_found)
 {
     board_start_with_rx(&stream, on_rx);
-    hal_host_sensor.address = ADXL345_ADDRESS_HIGH;
+    hal_host_sensor()->address = ADXL345_ADDRESS_HIGH;
     board_type("status");
     for (unsigned step = 0; adxl345_fault() != ADXL345_FAULT_WRONG_ID; step++) {
         TEST_ASSERT_TRUE_MESSAGE(step < 1000, "no fault within 100 ms");
         board_run_ms(0.1);
     }
     real = ADXL345_ADDRESS_LOW;
-    hal_host_sensor.address = real;
+    hal_host_sensor()->address = real;
     board_run_ms(50);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
     TEST_ASSERT_EQUAL_HEX8(ADXL345_ADDRESS_LOW, adxl345_address());

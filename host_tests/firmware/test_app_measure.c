@@ -28,7 +28,7 @@ static void start_exact(const int16_t self_test_lsb[3])
         }
     }
     board_start(&stream, 0.0, 0);
-    memcpy(hal_host_sensor.part.self_test_lsb, self_test_lsb, sizeof hal_host_sensor.part.self_test_lsb);
+    memcpy(hal_host_sensor()->part.self_test_lsb, self_test_lsb, sizeof hal_host_sensor()->part.self_test_lsb);
     board_run_ms(500);
 }
 
@@ -49,8 +49,8 @@ static void assert_sensor_is_as_set(void)
     for (uint16_t dhz = 125; dhz < settings()->rate_dhz; dhz = (uint16_t)(dhz * 2u)) {
         code++;
     }
-    TEST_ASSERT_EQUAL_HEX8(formats[settings()->range_g], hal_host_sensor.reg[ADXL345_DATA_FORMAT]);
-    TEST_ASSERT_EQUAL_HEX8(code, hal_host_sensor.reg[ADXL345_BW_RATE]);
+    TEST_ASSERT_EQUAL_HEX8(formats[settings()->range_g], hal_host_sensor()->reg[ADXL345_DATA_FORMAT]);
+    TEST_ASSERT_EQUAL_HEX8(code, hal_host_sensor()->reg[ADXL345_BW_RATE]);
     TEST_ASSERT_EQUAL(ADXL345_STREAMING, adxl345_phase());
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NONE, adxl345_fault());
 }
@@ -148,8 +148,8 @@ TEST(test_offsets_do_not_count)
 {
     static const int16_t shift_lsb[] = { 300, -300, 400 };
     start_exact(shift_lsb);
-    hal_host_sensor.part.offset_lsb[0] = -400;
-    hal_host_sensor.part.offset_lsb[2] = 300;
+    hal_host_sensor()->part.offset_lsb[0] = -400;
+    hal_host_sensor()->part.offset_lsb[2] = 300;
     board_run_ms(300);
     size_t note = talk_typed("selftest", SELFTEST_MS + 200.0);
     for (size_t axis = 0; axis < 3; axis++) {
@@ -186,9 +186,9 @@ TEST(test_a_supply_that_fails_in_the_middle)
     for (double at_ms = 3.0; at_ms < 1600.0; at_ms += 17.0) {
         talk_start_noisy(100.0, 0.0);
         size_t note = talk_typed("selftest", at_ms);
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         board_run_ms(30.0);
-        adxl345_model_power(&hal_host_sensor, true);
+        adxl345_model_power(hal_host_sensor(), true);
         board_run_ms(SELFTEST_MS + 300.0);
         talk_assert_told_once(note, "selftest");
         cut += board_notes_with("# refused 9", note);
@@ -204,12 +204,12 @@ TEST(test_a_sensor_that_stays_away)
 {
     talk_start_noisy(100.0, 0.0);
     size_t note = talk_typed("selftest", 900.0);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(500.0);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# refused 9", note));
     board_run_ms(3000.0);
     TEST_ASSERT_EQUAL_UINT64(0, hal_host_watchdog_bite());
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     board_run_ms(300.0);
     assert_sensor_is_as_set();
     assert_no_row_is_shifted(board.row_count - 5);
@@ -283,9 +283,9 @@ TEST(test_without_samples_there_is_no_measurement)
     note = talk_typed("selftest", 100.0);
     talk_assert_note("# refused 9: samples lost or settings changed", note + 1);
     TEST_ASSERT_EQUAL(ADXL345_STOPPED, adxl345_phase());
-    TEST_ASSERT_EQUAL_HEX8(0, hal_host_sensor.reg[ADXL345_POWER_CTL]);
+    TEST_ASSERT_EQUAL_HEX8(0, hal_host_sensor()->reg[ADXL345_POWER_CTL]);
     (void)talk_typed("go", 300.0);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(300.0);
     note = talk_typed("selftest", 100.0);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# refused 9", note));
@@ -296,7 +296,7 @@ TEST(test_a_reset_amid_the_force)
 {
     talk_start_noisy(100.0, 0.0);
     (void)talk_typed("selftest", 1000.0);
-    TEST_ASSERT_EQUAL_HEX8(0x8B, hal_host_sensor.reg[ADXL345_DATA_FORMAT]);
+    TEST_ASSERT_EQUAL_HEX8(0x8B, hal_host_sensor()->reg[ADXL345_DATA_FORMAT]);
     hal_host_reset_mcu(HAL_RESET_EXTERNAL);
     size_t row = board.row_count;
     app_start();

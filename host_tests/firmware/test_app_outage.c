@@ -54,15 +54,15 @@ static void take_away(outage_t *was, double ms)
 {
     was->there_ms = 0.0;
     was->off_ms = hal_host_now_ms();
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     was->seen_ms = wait_for_fault(true);
     board_run_ms(ms);
 }
 
 static void give_back(outage_t *was)
 {
-    was->address = hal_host_sensor.address;
-    adxl345_model_power(&hal_host_sensor, true);
+    was->address = hal_host_sensor()->address;
+    adxl345_model_power(hal_host_sensor(), true);
     was->over_ms = wait_for_fault(false);
     board_run_ms(200);
 }
@@ -110,9 +110,9 @@ TEST(test_end_of_a_fault_tells_its_length_and_the_samples_lost)
         board_run_ms(3500);
         size_t note = board.note_count;
         size_t row = board.row_count;
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         board_run_ms(lengths_ms[i]);
-        adxl345_model_power(&hal_host_sensor, true);
+        adxl345_model_power(hal_host_sensor(), true);
         board_run_ms(500);
         assert_outage_is_told(note, row, lengths_ms[i] < 59000 ? 20.0 : 1100.0);
     }
@@ -126,9 +126,9 @@ TEST(test_each_outage_begins_anew)
     unsigned lost[2];
     for (unsigned i = 0; i < 2; i++) {
         size_t row = board.row_count;
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         board_run_ms(i == 0 ? 700 : 300);
-        adxl345_model_power(&hal_host_sensor, true);
+        adxl345_model_power(hal_host_sensor(), true);
         board_run_ms(500);
         lost[i] = told_by(board.note_count - 1).lost;
         TEST_ASSERT_EQUAL_UINT(missing_after(row), lost[i]);
@@ -140,7 +140,7 @@ TEST(test_each_outage_begins_anew)
 /* As many replies wait as there is room for, and the line stands still. */
 static void fill_replies(void)
 {
-    hal_host_faults.tx_stuck = true;
+    hal_host_faults()->tx_stuck = true;
     for (int i = 0; i < 12; i++) {
         board_type("odr");
     }
@@ -155,11 +155,11 @@ TEST(test_a_fault_for_which_there_is_no_room_is_told_later)
     for (int ends = 0; ends <= 1; ends++) {
         const char *words = ends ? "# fault 1 over" : "# fault 1: ";
         fill_replies();
-        adxl345_model_power(&hal_host_sensor, ends);
+        adxl345_model_power(hal_host_sensor(), ends);
         board_run_ms(150);
         TEST_ASSERT_EQUAL(ends ? ADXL345_FAULT_NONE : ADXL345_FAULT_NO_SENSOR, adxl345_fault());
         TEST_ASSERT_EQUAL_size_t(0, board_notes_with(words, 0));
-        hal_host_faults.tx_stuck = false;
+        hal_host_faults()->tx_stuck = false;
         board_run_ms(2000);
         TEST_ASSERT_EQUAL_size_t(1, board_notes_with(words, 0));
     }
@@ -175,7 +175,7 @@ TEST(test_a_fault_that_begins_while_there_is_no_room_is_as_long_as_it_was)
     fill_replies();
     size_t before = board.note_count;
     take_away(&was, 150);
-    hal_host_faults.tx_stuck = false;
+    hal_host_faults()->tx_stuck = false;
     board_run_ms(1850);
     give_back(&was);
     assert_told_as_it_was(&was, next_fault_note(next_fault_note(before) + 1));
@@ -197,7 +197,7 @@ TEST(test_the_end_of_a_fault_keeps_its_numbers_until_it_is_told)
     }
     give_back(&was[0]);
     take_away(&was[1], 200);
-    hal_host_sensor.address = 0x1D;
+    hal_host_sensor()->address = 0x1D;
     give_back(&was[1]);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
     board_run_ms(20000);
@@ -235,12 +235,12 @@ TEST(test_an_outage_of_two_months_is_not_told_as_a_short_one)
     for (size_t i = 0; i < sizeof passed_s / sizeof passed_s[0]; i++) {
         board_start_resting();
         board_run_ms(500);
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         board_run_ms(500);
         for (uint32_t s = 0; s < passed_s[i]; s++) {
             count(COUNT_SECONDS);
         }
-        adxl345_model_power(&hal_host_sensor, true);
+        adxl345_model_power(hal_host_sensor(), true);
         board_run_ms(500);
         double ms = told_by(board.note_count - 1).ms;
         TEST_ASSERT_DOUBLE_WITHIN(2000.0, fmin(passed_s[i] * 1e3, UINT32_MAX), ms);
@@ -253,15 +253,15 @@ TEST(test_a_fault_that_ends_in_a_plot_is_told_with_its_length)
     board_start_resting();
     board_run_ms(500);
     for (int twice = 0; twice <= 1; twice++) {
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         board_run_ms(300);
         size_t before = talk_typed("mode plot", 400);
-        adxl345_model_power(&hal_host_sensor, true);
+        adxl345_model_power(hal_host_sensor(), true);
         board_run_ms(2000);
         if (twice) { /* gone again before it was told: one outage */
-            adxl345_model_power(&hal_host_sensor, false);
+            adxl345_model_power(hal_host_sensor(), false);
             board_run_ms(500);
-            adxl345_model_power(&hal_host_sensor, true);
+            adxl345_model_power(hal_host_sensor(), true);
             board_run_ms(2000);
         }
         TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over", before));
@@ -314,9 +314,9 @@ TEST(test_a_cut_of_int1_loses_no_sample)
         talk_start();
         (void)talk_typed(rates[r], 1000);
         for (unsigned tenths = 0; tenths < 10; tenths++) {
-            hal_host_faults.int1_cut = true;
+            hal_host_faults()->int1_cut = true;
             board_run_ms(500);
-            hal_host_faults.int1_cut = false;
+            hal_host_faults()->int1_cut = false;
             board_run_ms(300 + tenths * adxl345_period_us() / 10000.0);
             told_t told = told_by(board.note_count - 1);
             TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_INT1_SILENT, told.code);

@@ -22,7 +22,7 @@ void setUp(void)
 static void board_start_with_a_slow_processor(void)
 {
     board_start_resting();
-    hal_host_cpu_hz = 15500000;
+    hal_host_set_cpu_hz(15500000);
     board_run_ms(200);
 }
 
@@ -88,7 +88,7 @@ TEST(test_a_rate_too_fast_for_the_filter_is_refused)
     type_and_read("rate 12.5", "# rate 12.5 Hz, I2C at 363.6 kHz");
     type_and_read("filter {plain}", "# filter {plain}");
     type_and_read("rate 800", "# rate 800 Hz, I2C at 400 kHz");
-    hal_host_cpu_hz = 5000000; /* not even the rest of a sample's way */
+    hal_host_set_cpu_hz(5000000); /* not even the rest of a sample's way */
     type_and_read("filter {light}", "# refused 5: takes 2235 of 0 cycles a sample");
     (void)talk_typed("status", 300);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("lines refused 3", before));
@@ -110,9 +110,10 @@ TEST(test_every_filter_fits_every_rate_of_this_board_but_the_slowest_800_hz)
                              settings_filter_cycles(slowest_kind()));
     TEST_ASSERT_EQUAL_UINT32(20000u - LIMIT_REST_CYCLES, settings_left_cycles(8000));
     TEST_ASSERT_EQUAL_UINT32(1280000u - LIMIT_REST_CYCLES, settings_left_cycles(125));
-    hal_host_cpu_hz = (LIMIT_REST_CYCLES + 3u * filter_worst_cycles(filter_listed(slowest_kind()))) * 800u;
+    uint32_t full_hz = (LIMIT_REST_CYCLES + 3u * filter_worst_cycles(filter_listed(slowest_kind()))) * 800u;
+    hal_host_set_cpu_hz(full_hz);
     TEST_ASSERT_FALSE(settings_fit(slowest_kind(), 8000)); /* nothing would be left for a row */
-    hal_host_cpu_hz += 800u;
+    hal_host_set_cpu_hz(full_hz + 800u);
     TEST_ASSERT_TRUE(settings_fit(slowest_kind(), 8000));
 }
 

@@ -68,10 +68,10 @@ static void main_stands_still(double ms)
 static void disturb(uint8_t status, unsigned events)
 {
     board_run_ms(50);
-    hal_host_faults.status_skip = events;
-    hal_host_faults.next_status = status;
+    hal_host_faults()->status_skip = events;
+    hal_host_faults()->next_status = status;
     board_run_ms(30);
-    TEST_ASSERT_TRUE_MESSAGE(hal_host_faults.next_status < 0, "the disturbance has not happened");
+    TEST_ASSERT_TRUE_MESSAGE(hal_host_faults()->next_status < 0, "the disturbance has not happened");
 }
 
 TEST(test_failed_transfers_are_told_apart)
@@ -95,9 +95,9 @@ TEST(test_failed_transfers_are_told_apart)
     }
     for (unsigned n = 0; n < 6; n++) {
         board_run_ms(50);
-        hal_host_faults.hang_clocks = 9;
+        hal_host_faults()->hang_clocks = 9;
         board_run_ms(30);
-        TEST_ASSERT_EQUAL_UINT8(0, hal_host_faults.hang_clocks);
+        TEST_ASSERT_EQUAL_UINT8(0, hal_host_faults()->hang_clocks);
     }
     ask();
     TEST_ASSERT_EQUAL_UINT(7, told("not acknowledged "));
@@ -174,15 +174,15 @@ TEST(test_overruns_are_told)
     ask();
     sources_with_overrun = 0;
     main_stands_still(100);
-    TEST_ASSERT_EQUAL_UINT32(0, hal_host_sensor.overruns);
+    TEST_ASSERT_EQUAL_UINT32(0, hal_host_sensor()->overruns);
     main_stands_still(200);
     main_stands_still(220);
     ask();
-    TEST_ASSERT_TRUE(hal_host_sensor.overruns > 0);
+    TEST_ASSERT_TRUE(hal_host_sensor()->overruns > 0);
     TEST_ASSERT_TRUE(sources_with_overrun >= 2);
     TEST_ASSERT_EQUAL_UINT(sources_with_overrun, told("overruns "));
     TEST_ASSERT_TRUE(told("drained ") >= 19 + 33 + 33);
-    TEST_ASSERT_UINT_WITHIN(1, hal_host_sensor.overruns, told("lost ")); /* by the stamps, which are interpolated */
+    TEST_ASSERT_UINT_WITHIN(1, hal_host_sensor()->overruns, told("lost ")); /* by the stamps, which are interpolated */
 }
 
 /* INT1 is held high: the sensor is looked at, and has nothing, again and again. */
@@ -191,9 +191,9 @@ TEST(test_readings_without_a_sample_are_told)
     stream_t stream = board_noisy_stream(1000, 100.0, 1.5, 23u);
     start(&stream, look_at_source);
     sources_without_data = 0;
-    hal_host_faults.int1_high = true;
+    hal_host_faults()->int1_high = true;
     board_run_ms(300);
-    hal_host_faults.int1_high = false;
+    hal_host_faults()->int1_high = false;
     board_run_ms(1000);
     ask();
     /* those that only ask are none, and a sample may come behind INT_SOURCE */
@@ -214,7 +214,7 @@ TEST(test_stuck_samples_are_counted)
 TEST(test_no_sensor_has_no_rate)
 {
     board_start_resting();
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(500);
     ask();
     TEST_ASSERT_NOT_NULL(strstr(board.notes[newest], "fault 1, rate 100 Hz, measured 0.00 Hz, uptime s 0"));
@@ -224,9 +224,9 @@ TEST(test_restarts_are_counted)
 {
     start(NULL, NULL);
     for (unsigned n = 0; n < 4; n++) {
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         board_run_ms(100);
-        adxl345_model_power(&hal_host_sensor, true);
+        adxl345_model_power(hal_host_sensor(), true);
         board_run_ms(300);
     }
     ask();
@@ -242,11 +242,11 @@ TEST(test_a_fifo_that_is_behind_is_fetched)
         start(NULL, NULL);
         (void)talk_typed(commands[i / 2], 500);
         if (i % 2 == 0) {
-            hal_host_faults.int1_cut = true;
+            hal_host_faults()->int1_cut = true;
             board_run_ms(10);
-            hal_host_faults.int1_cut = false;
+            hal_host_faults()->int1_cut = false;
         } else {
-            hal_host_faults.hang_clocks = 9;
+            hal_host_faults()->hang_clocks = 9;
         }
         board_run_ms(300);
         ask();
@@ -254,7 +254,7 @@ TEST(test_a_fifo_that_is_behind_is_fetched)
         ask();
         TEST_ASSERT_EQUAL_UINT(0, told("overruns "));
         TEST_ASSERT_EQUAL_UINT(0, told("lost "));
-        TEST_ASSERT_TRUE(hal_host_sensor.fifo_count <= 2);
+        TEST_ASSERT_TRUE(hal_host_sensor()->fifo_count <= 2);
     }
 }
 
@@ -263,10 +263,10 @@ TEST(test_what_is_no_restart)
 {
     start(NULL, NULL);
     board_run_ms(300);
-    hal_host_faults.int1_cut = true;
+    hal_host_faults()->int1_cut = true;
     board_run_ms(300);
     TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_INT1_SILENT, adxl345_fault());
-    hal_host_faults.int1_cut = false;
+    hal_host_faults()->int1_cut = false;
     board_run_ms(300);
     TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_NONE, adxl345_fault());
     (void)talk_typed("rate 200", 300);

@@ -40,19 +40,19 @@ TEST(test_led_flashes_by_what_to_look_at)
 {
     board_start_resting();
     board_run_ms(500);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     assert_led_flashes(2);
     board_start_resting();
-    hal_host_faults.id_wrong = true;
+    hal_host_faults()->id_wrong = true;
     assert_led_flashes(2);
     board_start_resting();
-    hal_host_faults.sda_low = true;
+    hal_host_faults()->sda_low = true;
     assert_led_flashes(1);
     board_start_resting();
-    hal_host_faults.scl_low = true;
+    hal_host_faults()->scl_low = true;
     assert_led_flashes(1);
     board_start_resting();
-    hal_host_faults.int1_cut = true;
+    hal_host_faults()->int1_cut = true;
     assert_led_flashes(3);
     board_start_resting();
     assert_led_flashes(0);
@@ -90,10 +90,10 @@ TEST(test_a_change_of_rate_in_an_outage_forgets_no_sample)
 {
     board_start_resting();
     board_run_ms(500);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(500);
     (void)talk_typed("rate 200", 500);
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     board_run_ms(500);
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 1 over", 0));
     TEST_ASSERT_UINT32_WITHIN(10, 205, counted(COUNT_LOST));
@@ -118,7 +118,7 @@ TEST(test_a_command_does_not_call_a_lasting_fault_over)
         stream_t stream = faults[i] == ADXL345_FAULT_STUCK ? board_constant_stream(8000, 100.0, 5, 6, 250)
                                                            : two_sensors();
         board_start(&stream, 0.0, 0);
-        hal_host_faults.int1_high = faults[i] == ADXL345_FAULT_INT1_STUCK;
+        hal_host_faults()->int1_high = faults[i] == ADXL345_FAULT_INT1_STUCK;
         board_run_ms(4000);
         TEST_ASSERT_EQUAL_UINT(faults[i], adxl345_fault());
         size_t before = board.note_count;
@@ -141,10 +141,10 @@ TEST(test_a_sensor_that_was_away_is_not_suspected)
     board_start(&stream, 0.0, 0);
     board_run_ms(2000);
     TEST_ASSERT_EQUAL_UINT(ADXL345_FAULT_STUCK, adxl345_fault());
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(1500);
     size_t row = board.row_count;
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     board_run_ms(500);
     for (; row < board.row_count; row++) {
         TEST_ASSERT_EQUAL_UINT(0, board.rows[row].flags & ROW_STUCK);

@@ -215,10 +215,10 @@ TEST(test_the_drivers_faults_begin_and_end_meanwhile)
     start(20, 13000);
     assert_lines(1, 0);
     for (size_t times = 1; times <= 2; times++) {
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
         board_run_ms(300);
         TEST_ASSERT_EQUAL_UINT8(ADXL345_FAULT_NO_SENSOR, sensor_watch_fault());
-        adxl345_model_power(&hal_host_sensor, true);
+        adxl345_model_power(hal_host_sensor(), true);
         board_run_ms(3000);
         TEST_ASSERT_EQUAL_size_t(times, board_notes_with("# fault 1: ", 0));
         TEST_ASSERT_EQUAL_size_t(times, board_notes_with("# fault 1 over: after ", 0));
@@ -231,10 +231,10 @@ TEST(test_the_drivers_faults_begin_and_end_meanwhile)
 TEST(test_the_ends_of_two_faults_do_not_mix)
 {
     start(20, 13000);
-    adxl345_model_power(&hal_host_sensor, false);
+    adxl345_model_power(hal_host_sensor(), false);
     board_run_ms(300);
     (void)talk_typed("mode plot", 200);
-    adxl345_model_power(&hal_host_sensor, true);
+    adxl345_model_power(hal_host_sensor(), true);
     move_z(236);
     board_run_ms(5000);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("over: after", 0));
@@ -306,9 +306,9 @@ TEST(test_a_sound_sensor_is_never_accused)
     for (size_t i = 0; i < sizeof z_lsb / sizeof z_lsb[0]; i++) {
         start(z_lsb[i], 5000);
         for (int outage = 0; outage < 8; outage++) {
-            adxl345_model_power(&hal_host_sensor, false);
+            adxl345_model_power(hal_host_sensor(), false);
             board_run_ms(outage * 2500);
-            adxl345_model_power(&hal_host_sensor, true);
+            adxl345_model_power(hal_host_sensor(), true);
             board_run_ms(1300 + outage * 171);
         }
         (void)talk_typed("stop", 15000);

@@ -22,7 +22,7 @@ void setUp(void)
 {
     hal_host_config_t config = { .time_start_us = 0xFFFFFFFFu - 1000000u };
     hal_host_begin(&config, NULL, false);
-    hal_host_sensor.powered = false;
+    hal_host_sensor()->powered = false;
     hal_uart_init(115200);
     hal_time_init();
     hal_drdy_enable();

@@ -20,7 +20,7 @@ static void run(uint8_t lap_step, const char *const *lines, size_t count)
 {
     board_start(&stream, 0.0, 0);
     board_run_ms(300.0); /* the sensor's clock is the same in all runs */
-    hal_host_faults.lap_step = lap_step;
+    hal_host_faults()->lap_step = lap_step;
     for (size_t i = 0; i < count; i++) {
         (void)talk_typed(lines[i], 400.0);
     }
@@ -78,7 +78,7 @@ TEST(test_a_command_waits_for_the_line_before)
     board_run_ms(300.0);
     board_type("baud 1000000"); /* so that the second is there before the first is answered */
     board_run_ms(100.0);
-    hal_host_faults.lap_step = SLOW;
+    hal_host_faults()->lap_step = SLOW;
     size_t before = board.note_count;
     hal_host_type("rate\nrate 800\n");
     board_run_ms(400.0);

@@ -238,7 +238,7 @@ static double handed_over_at_s(double ppm)
     stream_t stream = board_noisy_stream(2000, 100.0, 0.7, 61006);
     board_start(&stream, ppm, 0);
     board_run_ms(1000);
-    hal_host_faults.lap_step = 1; /* passes of a few pieces: a change is seen under way */
+    hal_host_faults()->lap_step = 1; /* passes of a few pieces: a change is seen under way */
     double at_s = 0.0;
     while (hal_host_now_ms() < 20000.0) {
         app_pass();
@@ -250,7 +250,7 @@ static double handed_over_at_s(double ppm)
         TEST_ASSERT_EQUAL_HEX16(0, board.rows[i].flags & ~(unsigned)ROW_GATED);
         TEST_ASSERT_INT_WITHIN(100, board.rows[i].roll_cdeg, board.rows[i + 1].roll_cdeg);
     }
-    hal_host_faults.lap_step = 0;
+    hal_host_faults()->lap_step = 0;
     return at_s;
 }
 

@@ -149,7 +149,7 @@ static void start(uint8_t options)
     in_banner = true;
     hal_host_begin(&config, &stream, true);
     if (options & OPTION_NO_SENSOR) {
-        adxl345_model_power(&hal_host_sensor, false);
+        adxl345_model_power(hal_host_sensor(), false);
     }
     app_start();
     while (!quiet()) {
@@ -159,7 +159,7 @@ static void start(uint8_t options)
     run_ms(20); /* the last line of the banner is on its way yet */
     in_banner = false;
     FUZZ_CHECK(said.banner_lines == 7, "a banner of %u lines", said.banner_lines);
-    hal_host_faults.corrupt_rx_every = options & OPTION_DAMAGED_BYTES ? 16 : 0;
+    hal_host_faults()->corrupt_rx_every = options & OPTION_DAMAGED_BYTES ? 16 : 0;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

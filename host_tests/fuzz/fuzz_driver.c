@@ -136,15 +136,15 @@ static void stall_ms(double ms)
 
 static void write_register(uint8_t reg, uint8_t value)
 {
-    (void)adxl345_model_start(&hal_host_sensor, (uint8_t)(hal_host_sensor.address << 1));
-    (void)adxl345_model_write(&hal_host_sensor, reg);
-    (void)adxl345_model_write(&hal_host_sensor, value);
-    adxl345_model_stop(&hal_host_sensor);
+    (void)adxl345_model_start(hal_host_sensor(), (uint8_t)(hal_host_sensor()->address << 1));
+    (void)adxl345_model_write(hal_host_sensor(), reg);
+    (void)adxl345_model_write(hal_host_sensor(), value);
+    adxl345_model_stop(hal_host_sensor());
 }
 
 static void set_power(bool on)
 {
-    adxl345_model_power(&hal_host_sensor, on);
+    adxl345_model_power(hal_host_sensor(), on);
 }
 
 static void start(uint8_t choice)
@@ -187,26 +187,26 @@ static void operate(fuzz_input_t *in)
         run_ms(value * 0.5, false);
         break;
     case 6:
-        hal_host_faults.scl_low = (value & 1) != 0;
-        hal_host_faults.sda_low = (value & 2) != 0;
-        hal_host_faults.stop_stuck = (value & 4) != 0;
+        hal_host_faults()->scl_low = (value & 1) != 0;
+        hal_host_faults()->sda_low = (value & 2) != 0;
+        hal_host_faults()->stop_stuck = (value & 4) != 0;
         break;
     case 7:
-        hal_host_faults.hang_clocks = value % 40;
+        hal_host_faults()->hang_clocks = value % 40;
         break;
     case 8:
-        hal_host_faults.int1_cut = (value & 1) != 0;
-        hal_host_faults.int1_high = (value & 2) != 0;
+        hal_host_faults()->int1_cut = (value & 1) != 0;
+        hal_host_faults()->int1_high = (value & 2) != 0;
         break;
     case 9:
-        hal_host_faults.write_lost_register = lost[value % sizeof lost];
+        hal_host_faults()->write_lost_register = lost[value % sizeof lost];
         break;
     case 10:
-        hal_host_faults.id_wrong = (value & 1) != 0;
+        hal_host_faults()->id_wrong = (value & 1) != 0;
         break;
     case 11:
-        hal_host_faults.next_status = foreign_status(value);
-        hal_host_faults.status_skip = operation / 16u;
+        hal_host_faults()->next_status = foreign_status(value);
+        hal_host_faults()->status_skip = operation / 16u;
         break;
     case 12:
         set_power((value & 1) != 0);
@@ -229,9 +229,8 @@ static void operate(fuzz_input_t *in)
 
 static void end_faults(void)
 {
-    memset(&hal_host_faults, 0, sizeof hal_host_faults);
-    hal_host_faults.next_status = -1;
-    if (!in_order || !hal_host_sensor.powered) {
+    *hal_host_faults() = (hal_host_faults_t){ .next_status = -1 };
+    if (!in_order || !hal_host_sensor()->powered) {
         set_power(false);
         set_power(true);
     }
@@ -291,7 +290,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     last_us = 0;
     in_order = true;
     hal_host_begin(&host, &stream, true);
-    hal_host_sensor.address = options & 2 ? ADXL345_ADDRESS_HIGH : ADXL345_ADDRESS_LOW;
+    hal_host_sensor()->address = options & 2 ? ADXL345_ADDRESS_HIGH : ADXL345_ADDRESS_LOW;
     for (unsigned i = fuzz_u8(&in) % REGISTERS_MAX; i != 0; i--) {
         uint8_t reg = fuzz_u8(&in);
         write_register((uint8_t)(ADXL345_THRESH_TAP + reg % 29), fuzz_u8(&in));

@@ -153,7 +153,7 @@ void rig_until_taken(size_t count)
 
 void rig_until_asked(void)
 {
-    hal_host_faults.int1_cut = true;
+    hal_host_faults()->int1_cut = true;
     while (adxl345_burst_running()) {
         rig_pass();
     }

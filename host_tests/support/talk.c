@@ -58,7 +58,7 @@ void talk_power_cycle(bool strap)
     uint8_t kept[1024];
     memcpy(kept, hal_host_eeprom(), sizeof kept);
     hal_host_reset_mcu(HAL_RESET_POWER_ON);
-    hal_host_faults.strap_low = strap;
+    hal_host_faults()->strap_low = strap;
     TEST_ASSERT_EQUAL_MEMORY(kept, hal_host_eeprom(), sizeof kept);
     app_start();
     board_run_ms(1000);
