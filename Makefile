@@ -48,8 +48,9 @@ AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -fshort-en
                -fno-tree-dominator-opts -fno-tree-switch-conversion -fno-forward-propagate \
                -fno-tree-loop-ivcanon -fno-tree-scev-cprop -fno-tree-copy-prop -fno-move-loop-invariants -frename-registers -fno-jump-tables -mstrict-X -fno-if-conversion -fno-guess-branch-probability -fno-strict-aliasing -fno-gcse-lm -fno-tree-dce -fno-tree-pre -fno-ssa-phiopt
 # lines, which change a few bytes, and no variables, which would change 50 of code through link-time optimisation: every program below,
-# flashed, tested, profiled or traced, is the same bits
-AVR_DEBUG   := -gdwarf-2 -g1
+# flashed, tested, profiled or traced, is the same bits. Nor the folder's name: the linker's relaxation keeps a redundant `ret` whose address
+# equals the offset of some debug string, so with that name an image would depend on its length
+AVR_DEBUG   := -gdwarf-2 -g1 -gno-record-gcc-switches -fdebug-prefix-map='$(CURDIR)=.'
 AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=$(CPU_HZ)UL $(AVR_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr $(FILTER_FLAG)
 # calls within 4 KB take half the bytes: functions.ld orders the functions so that most calls are (mk/scripts/layout.py)

@@ -3,6 +3,7 @@ firmware starts is the one that docs/results/default-filter.md decides for, wher
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 from unittest import mock
@@ -17,7 +18,7 @@ import link_image
 import system_support
 from system_support import refused, run_all, test
 
-OUT = pathlib.Path("build/images-test")
+OUT, EVERYDAY = pathlib.Path("build/images-test"), "build/uno/firmware.elf"
 IMAGES = pathlib.Path("mk/images.mk").read_text(encoding="utf-8")
 SETS = {name: names.split() for name, names in re.findall(r"^FILTERS_([a-z]+) *:= *(.*)$", IMAGES, re.M)}
 SMALL = SETS.pop("small")  # no image of its own: what boards with less flash get
@@ -255,6 +256,18 @@ def the_readme_names_the_default_that_the_page_decides():
     text = pathlib.Path("README.md").read_text(encoding="utf-8")
     named = re.findall(r"`(\w+)` \(default\)", text) + re.findall(r"why `(\w+)` is the default", text)
     assert len(named) >= 2 and set(named) == {default}, (default, named)
+
+
+@test
+def an_image_does_not_depend_on_its_folders_name():
+    root = OUT.resolve() / "a folder of a long name"
+    shutil.rmtree(root, ignore_errors=True)
+    for part in ("firmware", "hal", "lib", "mk", "host_tests"):
+        shutil.copytree(part, root / part, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copyfile("Makefile", root / "Makefile")
+    done = subprocess.run(["make", "-s", "-j2", EVERYDAY], cwd=root, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr
+    assert (root / EVERYDAY).read_bytes() == pathlib.Path(EVERYDAY).read_bytes()
 
 
 if __name__ == "__main__":
