@@ -13,9 +13,10 @@
 static const char names[] IN_FLASH = REPLIES(NO_NAME, NAME);
 
 #define NO_COMMAND(...)
-#define ONE_COMMAND(...) +1 /* NOLINT(bugprone-macro-parentheses) */
-enum { COMMANDS = 0 REPLIES(NO_COMMAND, ONE_COMMAND) };
-_Static_assert(NOTICE_BANNER == 0 && NOTICE_LISTING == (int)COMMANDS, "the commands follow the banner");
+#define COMMAND_NTH(kind, ...) NTH_##kind,
+enum { NTH_BANNER, REPLIES(NO_COMMAND, COMMAND_NTH) NTH_END };
+_Static_assert(NOTICE_BANNER == (int)NTH_BANNER && NOTICE_LISTING + 1 == (int)NTH_END,
+               "the commands follow the banner");
 
 _Static_assert((int)PACKED_DEPTH <= (int)REPLY_PAIRS_DEPTH, "room for the pairs in a pair");
 _Static_assert(PACKED_PAIR_FIRST == SAY_PAIR, "the codes of pairs follow those of values");

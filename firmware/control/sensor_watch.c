@@ -27,7 +27,7 @@ static const uint8_t flashes[] IN_FLASH = {
 
 /* A fault that stands beside the outage and costs no sample: has had its first line, at: */
 typedef struct {
-    bool told;
+    bool shown;
     uint32_t since_s;
 } beside_t;
 
@@ -130,8 +130,8 @@ static MACHINE_APART uint16_t newest_bit(void)
 void sensor_watch_start(uint32_t now_us)
 {
     forget();
-    watch.part.told = false;
-    watch.slowed.told = false;
+    watch.part.shown = false;
+    watch.slowed.shown = false;
     note(&watch, (uint8_t)adxl345_fault(), now_us);
     watch.reported_mask = newest_bit();
 }
@@ -139,17 +139,17 @@ void sensor_watch_start(uint32_t now_us)
 /* What is lost meanwhile is that of another fault. True: `reported` is in use. */
 static MACHINE_APART bool tell_beside(beside_t *b, uint8_t fault, bool holds)
 {
-    bool told = b->told;
-    if (told == holds || !notices_add((notice_kind_t)(NOTICE_FAULT_BEGIN + told), fault)) {
+    bool shown = b->shown;
+    if (shown == holds || !notices_add((notice_kind_t)(NOTICE_FAULT_BEGIN + shown), fault)) {
         return false;
     }
-    b->told = !told;
-    if (told) {
+    b->shown = !shown;
+    if (shown) {
         reported = (sensor_outage_t){ whole_ms(b->since_s), 0, adxl345_address() };
     } else {
         b->since_s = counted(COUNT_SECONDS);
     }
-    return told;
+    return shown;
 }
 
 /* `reported` has room for one end. */

@@ -9,6 +9,6 @@
 #define HAL_UART_DIVISOR(baud) ((F_CPU / 8 + (baud) / 2) / (baud))
 #define HAL_UART_REACHES(baud)                                                           \
     (F_CPU / 16 >= (baud) && F_CPU / 8 * 1000 <= HAL_UART_DIVISOR(baud) * (baud)*1022 && \
-     F_CPU / 8 * 1000 >= HAL_UART_DIVISOR(baud) * (baud)*978)
+     F_CPU / 8 * 1000 >= HAL_UART_DIVISOR(baud) * (baud)*978 && HAL_UART_DIVISOR(baud) <= 256)
 
 #endif
