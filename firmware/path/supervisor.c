@@ -14,7 +14,7 @@ enum { AXES = 3 };
 static struct {
     uint8_t repeated[AXES]; /* readings in a row that repeat the one before; saturates */
     uint8_t negative;       /* one bit per axis: sign of its last estimate while its readings changed */
-    uint8_t left_out;       /* AXES: none */
+    uint8_t left_out;       /* 1 to 3: x, y, z; 0, as after a reset: none */
     uint16_t missing_q6;    /* component of the axis left out */
 } supervisor;
 
@@ -30,7 +30,7 @@ void supervisor_reset(void)
     for (uint8_t axis = 0; axis < AXES; axis++) {
         supervisor.repeated[axis] = 0;
     }
-    supervisor.left_out = AXES;
+    supervisor.left_out = 0;
 }
 
 void supervisor_look(const int16_t before[3], const int16_t lsb[3])
@@ -52,21 +52,21 @@ static bool is_bad(uint8_t axis, const int16_t lsb[3], int16_t rail_high_lsb)
            (repeated >= SUPERVISOR_RAIL_SAMPLES && tilt_at_rail(lsb[axis], rail_high_lsb));
 }
 
-/* The only bad axis, while another one changes; AXES: none, or more than one. */
+/* The only bad axis, while another one changes, as in left_out; 0: none, or more than one. */
 static uint8_t bad_axis(const int16_t lsb[3], int16_t rail_high_lsb)
 {
-    uint8_t found = AXES;
+    uint8_t found = 0;
     bool changes = false;
     for (uint8_t axis = 0; axis < AXES; axis++) {
         changes |= supervisor.repeated[axis] < SUPERVISOR_RAIL_SAMPLES;
         if (is_bad(axis, lsb, rail_high_lsb)) {
-            if (found != AXES) {
-                return AXES;
+            if (found != 0) {
+                return 0;
             }
-            found = axis;
+            found = (uint8_t)(axis + 1);
         }
     }
-    return changes ? found : (uint8_t)AXES;
+    return changes ? found : 0;
 }
 
 /* The reading of an axis at 0 g, Q8. */
@@ -92,13 +92,13 @@ static void note_signs(const tilt_axis_t axes[3], const calibration_t *calibrati
  * Without the bad axis' component the calibrated vector is perpendicular to that axis, whatever the mounting is:
  * returns what it lacks to 1 g.
  */
-static uint16_t missing_of_q6(const supervisor_view_t *view)
+static uint16_t missing_of_q6(const supervisor_view_t *view, uint8_t bad)
 {
     int32_t estimates_q8[AXES];
     for (uint8_t axis = 0; axis < AXES; axis++) {
         estimates_q8[axis] = tilt_axis_estimate_q8(&view->axes[axis]);
     }
-    estimates_q8[supervisor.left_out] = offset_q8(view->calibration, supervisor.left_out);
+    estimates_q8[bad] = offset_q8(view->calibration, bad);
     int32_t a_q8[AXES];
     calibration_apply(view->applied, estimates_q8, a_q8);
     return tilt_missing_q6(a_q8[0], a_q8[1], a_q8[2]);
@@ -106,12 +106,12 @@ static uint16_t missing_of_q6(const supervisor_view_t *view)
 
 void supervisor_sample(const supervisor_view_t *view)
 {
-    supervisor.left_out = AXES;
+    supervisor.left_out = 0;
     if (in_force(view->axes)) {
         note_signs(view->axes, view->calibration);
         supervisor.left_out = bad_axis(view->lsb, view->rail_high_lsb);
-        if (supervisor.left_out != AXES) {
-            supervisor.missing_q6 = missing_of_q6(view);
+        if (supervisor.left_out != 0) {
+            supervisor.missing_q6 = missing_of_q6(view, (uint8_t)(supervisor.left_out - 1));
         }
     }
 }
@@ -119,10 +119,10 @@ void supervisor_sample(const supervisor_view_t *view)
 /* The component missing to 1 g is that of the bad axis; its scale converts it to a reading. */
 bool supervisor_complete(const calibration_t *calibration, int32_t estimates_q8[3])
 {
-    uint8_t bad = supervisor.left_out;
-    if (bad == AXES) {
+    if (supervisor.left_out == 0) {
         return false;
     }
+    uint8_t bad = (uint8_t)(supervisor.left_out - 1);
     /* Q6 x UQ6 of 256 LSB per g: Q8 */
     int32_t part_q8 = (int32_t)(fx_product_u16(supervisor.missing_q6, calibration->scale_lsb_per_g_uq6[bad]) >> 12);
     bool negative = (supervisor.negative & (uint8_t)(1u << bad)) != 0;
@@ -140,7 +140,7 @@ static uint16_t remaining_sigma_q8(const tilt_axis_t *axes)
     for (uint8_t axis = 0; axis < AXES; axis++) {
         filter_probe_t probe;
         filter_probe(&axes[axis].filter, &probe);
-        if (axis != supervisor.left_out && probe.p_lsb2_q8 > p_lsb2_q8) {
+        if (axis + 1 != supervisor.left_out && probe.p_lsb2_q8 > p_lsb2_q8) {
             p_lsb2_q8 = probe.p_lsb2_q8;
         }
     }
@@ -164,9 +164,9 @@ void supervisor_say(const tilt_axis_t axes[3])
         say_axis(axis);
         text_words(names[axes[axis].filter.own.bank.chosen]);
     }
-    if (supervisor.left_out != AXES) {
+    if (supervisor.left_out != 0) {
         text_words(FLASH_TEXT(", without "));
-        say_axis(supervisor.left_out);
+        say_axis((uint8_t)(supervisor.left_out - 1));
         text_words(FLASH_TEXT(" sigma cdeg "));
         text_u32(tilt_partial_sigma_cdeg(remaining_sigma_q8(axes), supervisor.missing_q6));
     }

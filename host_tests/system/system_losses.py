@@ -65,6 +65,14 @@ def supervision_costs_at_most_600_cycles_a_sample():
 
 
 @test
+def no_axis_is_left_out_before_there_is_a_sample():
+    _, notes, _, _ = simrun("auto-start", STREAMS / "rest-2lsb.csv", "--fault", "0ms:unplug", "--cmd", "20:status", "--max-ms", 300,
+                            fw=image_with("auto"), judge=False)
+    (state,) = (note for note in notes if note.startswith("# state"))
+    assert ", chosen x " in state and "without" not in state, state
+
+
+@test
 def a_rate_above_the_streams_raises_no_fault():
     """A row that several samples take is not the reading of a sensor that hangs."""
     for rate in (400, 800):
