@@ -24,6 +24,8 @@ static uint8_t note;
 static uint8_t note_before;
 static uint8_t repeats;
 static bool led;
+static bool led_is_output;
+static bool strap_pulled_up;
 
 static uint64_t tick_next(void)
 {
@@ -91,6 +93,8 @@ void hal_host_reset_mcu(uint8_t cause)
     repeats = hal_reset_count((hal_reset_t)cause, true, repeats);
     host_eeprom_reset();
     led = false;
+    led_is_output = false;
+    strap_pulled_up = false;
     host_i2c_begin();
     host_uart_begin();
 }
@@ -112,7 +116,7 @@ uint64_t hal_host_watchdog_bite(void)
 
 bool hal_host_led(void)
 {
-    return led;
+    return led && led_is_output;
 }
 
 /* Main is never interrupted here, so there is nothing to block. */
@@ -178,14 +182,21 @@ void hal_reset_settled(void)
     repeats = 0;
 }
 
-void hal_strap_init(void) {}
-
-bool hal_strap_low(void)
+void hal_strap_init(void)
 {
-    return hal_host_faults()->strap_low;
+    strap_pulled_up = true;
 }
 
-void hal_led_init(void) {}
+/* Without its pull-up the pin floats, and may read low without a wire. */
+bool hal_strap_low(void)
+{
+    return !strap_pulled_up || hal_host_faults()->strap_low;
+}
+
+void hal_led_init(void)
+{
+    led_is_output = true;
+}
 
 void hal_led_set(bool on)
 {

@@ -2,7 +2,9 @@
 #include "hal_eeprom.h"
 #include "hal_host.h"
 #include "hal_i2c.h"
+#include "hal_led.h"
 #include "hal_sleep.h"
+#include "hal_strap.h"
 #include "hal_time.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
@@ -136,15 +138,21 @@ TEST(test_eeprom_is_busy_for_a_write)
     TEST_ASSERT_EQUAL_UINT8(0x5A, hal_eeprom_read(1023));
 }
 
-TEST(test_receive_ring_counts_what_it_loses)
+/* A hundred digits, of which it has room for 63. */
+static void overfill_receive_ring(void)
 {
-    uint8_t byte;
     for (int i = 0; i < 10; i++) {
         hal_host_type("0123456789");
     }
     for (int i = 0; i < 200; i++) {
         hal_sleep_until_wake();
     }
+}
+
+TEST(test_receive_ring_counts_what_it_loses)
+{
+    uint8_t byte;
+    overfill_receive_ring();
     int received = 0;
     while (hal_uart_rx(&byte)) {
         TEST_ASSERT_EQUAL_CHAR('0' + received % 10, byte);
@@ -152,6 +160,40 @@ TEST(test_receive_ring_counts_what_it_loses)
     }
     TEST_ASSERT_EQUAL(63, received);
     TEST_ASSERT_EQUAL_UINT8(37, hal_uart_rx_lost());
+}
+
+/* The first byte after the gap is a 0; those after it are as sent. */
+TEST(test_a_gap_is_marked_once)
+{
+    uint8_t byte;
+    overfill_receive_ring();
+    while (hal_uart_rx(&byte)) {
+    }
+    hal_host_type("abc");
+    for (int i = 0; i < 10; i++) {
+        hal_sleep_until_wake();
+    }
+    static const uint8_t received[] = { 0, 'b', 'c' };
+    for (size_t i = 0; i < sizeof received; i++) {
+        TEST_ASSERT_TRUE(hal_uart_rx(&byte));
+        TEST_ASSERT_EQUAL_UINT8(received[i], byte);
+    }
+    TEST_ASSERT_FALSE(hal_uart_rx(&byte));
+}
+
+/* The pull-up and the output are off again after each reset of the MCU, whose pins are all inputs then. */
+TEST(test_pins_work_once_they_are_initialised)
+{
+    for (int resets = 0; resets < 2; resets++) {
+        hal_led_set(true);
+        TEST_ASSERT_FALSE(hal_host_led());
+        TEST_ASSERT_TRUE(hal_strap_low());
+        hal_led_init();
+        hal_strap_init();
+        TEST_ASSERT_TRUE(hal_host_led());
+        TEST_ASSERT_FALSE(hal_strap_low());
+        hal_host_reset_mcu(HAL_RESET_EXTERNAL);
+    }
 }
 
 /* What hal/host takes from the same headers, so no other test on the PC sees it: tables 26-3 and 26-4, 11.9.1, 8.4. */
