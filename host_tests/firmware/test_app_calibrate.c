@@ -6,9 +6,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/app.h"
 #include "base/notices.h"
 #include "calibration.h"
 #include "control/calibrate.h"
+#include "control/measure.h"
 #include "path/pipeline.h"
 #include "settings/settings.h"
 #include "support/documented_limits.h"
@@ -283,6 +285,24 @@ TEST(test_cal6_stops)
     TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# refused 10", talk_typed("tare", 100.0)));
     (void)talk_typed("cal6 stop", 100.0);
     TEST_ASSERT_EQUAL_size_t(0, board_notes_with("refused", talk_typed("tare", 100.0)));
+}
+
+/* Also when all six are known and the calibration is being found, which takes several passes. */
+TEST(test_cal6_stops_while_it_is_solved)
+{
+    start_order("012345", 2.0, adxl345_part_typical);
+    calibration_t before = settings()->calibration;
+    size_t note = talk_typed("cal6", 30000.0);
+    while (calibrate_report()->left != 0) {
+        TEST_ASSERT_TRUE(hal_host_now_ms() < 45000.0);
+        app_pass();
+    }
+    measure_stop();
+    board_run_ms(2000.0);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with(", 1 to go", note));
+    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("residual", note));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &settings()->calibration, sizeof before);
+    TEST_ASSERT_FALSE(measure_runs());
 }
 
 /* Another rate, or the sensor gone, ends it; nothing of it is left. */

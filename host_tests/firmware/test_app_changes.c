@@ -119,6 +119,29 @@ TEST(test_old_samples_are_filtered_as_before_a_change_of_range)
     TEST_ASSERT_TRUE_MESSAGE(old_on_the_way > 0, "no phase met a sample of the old range");
 }
 
+/*
+ * The sensor goes and the filter changes within its first three missing samples: each has its row, 10 ms after the one
+ * before, and is counted.
+ */
+TEST(test_a_change_of_filter_in_an_outage_leaves_no_row_out)
+{
+    for (unsigned phase = 0; phase < 30; phase++) {
+        board_start_resting();
+        board_run_ms(500);
+        size_t row = board.row_count;
+        adxl345_model_power(hal_host_sensor(), false);
+        board_run_ms(phase);
+        (void)talk_typed("filter {plain}", 200);
+        TEST_ASSERT_TRUE(board.row_count >= row + 18);
+        for (; row < board.row_count; row++) {
+            TEST_ASSERT_UINT32_WITHIN(50, 10000, board.rows[row].t_us - board.rows[row - 1].t_us);
+        }
+        adxl345_model_power(hal_host_sensor(), true);
+        board_run_ms(200);
+        TEST_ASSERT_UINT32_WITHIN(5, 20 + phase / 10, counted(COUNT_LOST));
+    }
+}
+
 /* One axis ahead of each of the next three samples, 10 ms apart, so that no row waits for all of them. */
 TEST(test_a_change_of_filter_goes_axis_by_axis)
 {

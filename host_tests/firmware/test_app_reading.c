@@ -39,12 +39,13 @@ TEST(test_rows_wait_while_a_long_answer_is_read)
     assert_rows_wait("?");
 }
 
-/* By the time of the samples, in steps of 65.536 ms: to the one that is nearest. */
+/* From the answer, not from what was typed, by the samples' time in steps of 65.536 ms: to the one that is nearest. */
 TEST(test_rows_are_held_to_the_nearest_step)
 {
     enum { STEP_US = 65536, STEPS = (1000000 * LIMIT_HELD_S + STEP_US / 2) / STEP_US };
     for (uint32_t steps = STEPS - 1; steps <= STEPS + 1; steps++) {
         talk_start();
+        (void)talk_typed("rate", 1000);
         uint32_t from_us = pipeline_newest_us();
         rows_hold();
         pipeline_coast(from_us + steps * STEP_US);

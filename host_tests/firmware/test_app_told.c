@@ -4,9 +4,12 @@
 #include <string.h>
 
 #include "adxl345.h"
+#include "adxl345_driver.h"
 #include "base/counters.h"
 #include "base/notices.h"
 #include "base/text.h"
+#include "control/sensor_watch.h"
+#include "path/gravity.h"
 #include "path/pipeline.h"
 #include "support/documented_limits.h"
 #include "support/talk.h"
@@ -56,6 +59,44 @@ TEST(test_led_flashes_by_what_to_look_at)
     assert_led_flashes(3);
     board_start_resting();
     assert_led_flashes(0);
+}
+
+/* Over one pattern, begun in its dark part, a look at least every 8.2 ms. */
+static unsigned flashes_shown(void)
+{
+    const uint32_t pattern_us = 1u << 20;
+    unsigned flashes = 0;
+    bool was = false;
+    for (uint32_t t_us = pattern_us - 8000u; t_us < 2u * pattern_us - 8000u; t_us += 8000u) {
+        sensor_watch_pass(t_us);
+        flashes += hal_host_led() && !was;
+        was = hal_host_led();
+    }
+    return flashes;
+}
+
+/* The column LED of docs/faults.md, also for those that only a real sensor or bus can bring about. */
+TEST(test_each_fault_has_its_flashes)
+{
+    static const uint8_t flashes[] = { 0, 2, 2, 1, 2, 3, 2, 1, 1, 3, 4, 4, 4, 3 }; /* by code */
+    board_start_resting();
+    board_run_ms(500);
+    for (uint8_t code = 0; code < sizeof flashes; code++) {
+        adxl345_driver_state()->fault = code;
+        TEST_ASSERT_EQUAL_UINT8(code, sensor_watch_fault());
+        TEST_ASSERT_EQUAL_UINT(flashes[code], flashes_shown());
+    }
+    adxl345_driver_state()->fault = ADXL345_FAULT_NONE;
+    adxl345_driver_state()->garbled = GARBLED_SLOW;
+    sensor_watch_second();
+    TEST_ASSERT_EQUAL_UINT8(15, sensor_watch_fault());
+    TEST_ASSERT_EQUAL_UINT(1, flashes_shown());
+    for (int s = 0; s < LIMIT_NO_GRAVITY_S; s++) {
+        gravity_second(true, 0);
+    }
+    sensor_watch_second();
+    TEST_ASSERT_EQUAL_UINT8(14, sensor_watch_fault());
+    TEST_ASSERT_EQUAL_UINT(4, flashes_shown());
 }
 
 /* Every code has words, also those that only a real sensor or bus can bring about. */

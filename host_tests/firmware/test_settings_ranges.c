@@ -157,6 +157,29 @@ TEST(test_parameters_of_the_user_are_those_of_the_chosen_filter_alone)
     }
 }
 
+/* R alone, all but R, and all; at whichever place the filter has it. */
+TEST(test_the_users_r_is_found_among_the_parameters)
+{
+    enum { R = 777 };
+    for (kind = 0; kind < (uint8_t)FILTER_KIND_COUNT; kind++) {
+        filter_choice_t choice = { .filter = kind };
+        const char *name = filter_listed_name((filter_kind_t)kind);
+        uint8_t all = (uint8_t)((1u << filter_parameter_count(choice_law(&choice))) - 1u);
+        uint8_t r = 0;
+        for (uint8_t which = 0; which < CHOICE_PARAMETERS_MAX; which++) {
+            bool is_r = (all & 1u << which) != 0 && filter_parameter(choice_law(&choice), which) == &filter_parameter_r;
+            choice.parameters[which] = is_r ? R : which + 1u;
+            r |= (uint8_t)(is_r << which);
+        }
+        choice.own = all;
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(r != 0 ? R : 0, choice_r_lsb2_q8(&choice), name);
+        choice.own = r;
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(r != 0 ? R : 0, choice_r_lsb2_q8(&choice), name);
+        choice.own = (uint8_t)(all & ~r);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(0, choice_r_lsb2_q8(&choice), name);
+    }
+}
+
 TEST(test_each_list_takes_its_members_alone)
 {
     static const uint8_t lists[] = { SETTING_RATE, SETTING_RANGE, SETTING_BAUD };

@@ -5,6 +5,7 @@
 #include "filter_list.h"
 #include "path/pipeline.h"
 #include "path/supervisor.h"
+#include "support/path.h"
 #include "support/random.h"
 #include "support/roles.h"
 #include "support/talk.h"
@@ -170,6 +171,38 @@ TEST(test_a_change_of_the_filter_leaves_none_out)
     judged_t after = judge(1300.0, 1500.0);
     TEST_ASSERT_EQUAL_UINT(200, after.rows);
     TEST_ASSERT_EQUAL_UINT(0, after.left_out);
+}
+
+static bool leaves_one_out(void)
+{
+    row_t row;
+    pipeline_row(&row);
+    return (row.flags & ROW_LEFT_OUT) != 0;
+}
+
+/* So many samples with z at its rail, while the other axes change, until z is left out. */
+static unsigned samples_until_left_out(void)
+{
+    unsigned samples = 0;
+    do {
+        adxl345_sample_t s = { .t_us = samples * 10000u, .lsb = { 0, 0, 4095 } };
+        s.lsb[0] = s.lsb[1] = (int16_t)(samples % 2);
+        samples++;
+        pipeline_sample(&s);
+        pipeline_finish();
+    } while (!leaves_one_out() && samples < 100);
+    return samples;
+}
+
+/* The second time z has been at its rail before, too: what was known of it is forgotten. */
+TEST(test_a_restart_forgets_an_axis_that_was_left_out)
+{
+    for (int restarts = 0; restarts < 2; restarts++) {
+        path_start((uint8_t)filter_find("auto"), 1000, 16, 0);
+        TEST_ASSERT_FALSE(leaves_one_out());
+        unsigned samples = samples_until_left_out();
+        TEST_ASSERT_TRUE(samples == SUPERVISOR_RAIL_SAMPLES || samples == SUPERVISOR_RAIL_SAMPLES + 1);
+    }
 }
 
 /* Of two bad axes none can be made up. */
