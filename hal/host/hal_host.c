@@ -119,15 +119,15 @@ bool hal_host_led(void)
     return led && led_is_output;
 }
 
-/* Main is never interrupted here, so there is nothing to block. */
+/* Of all interrupts only INT1's can come while main runs: in what hal_host_config_t makes happen. */
 hal_irq_state_t hal_irq_save(void)
 {
-    return 0;
+    return host_drdy_block(true);
 }
 
 void hal_irq_restore(hal_irq_state_t state)
 {
-    (void)state;
+    (void)host_drdy_block(state != 0);
 }
 
 void hal_irq_enable(void) {}

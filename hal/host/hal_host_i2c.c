@@ -157,6 +157,10 @@ uint8_t hal_i2c_status(void)
 
 bool hal_i2c_stop_pending(void)
 {
+    if (host_config()->on_stop_asked != NULL) {
+        host_config()->on_stop_asked();
+        host_drdy_serve();
+    }
     return i2c.stop_pending;
 }
 

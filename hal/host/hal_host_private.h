@@ -40,8 +40,10 @@ void host_sensor_step(void);
 void host_sensor_check_rate(void);
 void host_drdy_reset(void);
 void host_drdy_tick(void);
-/* Runs the handler of a pending edge. */
+/* Runs the handler of a pending edge, unless it is blocked. */
 void host_drdy_serve(void);
+/* An edge waits until it is blocked no more; returns whether it was. */
+bool host_drdy_block(bool blocked);
 
 /* hal_host_i2c.c */
 void hal_host_i2c_handler(void);

@@ -15,6 +15,7 @@ static bool over;
 static size_t row_latched;
 static bool drdy_enabled;
 static bool drdy_edge;
+static bool drdy_blocked;  /* main is in a critical section */
 static uint8_t edges_left; /* in this tick; 0 after a reset acts as 256 */
 static uint8_t deaf_ticks;
 
@@ -45,16 +46,25 @@ void host_drdy_reset(void)
 {
     drdy_enabled = false;
     drdy_edge = false;
+    drdy_blocked = false;
     edges_left = 0;
     deaf_ticks = 0;
 }
 
 void host_drdy_serve(void)
 {
-    while (drdy_edge) {
+    while (drdy_edge && !drdy_blocked) {
         drdy_edge = false;
         hal_host_drdy_handler();
     }
+}
+
+bool host_drdy_block(bool blocked)
+{
+    bool before = drdy_blocked;
+    drdy_blocked = blocked;
+    host_drdy_serve();
+    return before;
 }
 
 void hal_drdy_enable(void)

@@ -23,6 +23,8 @@ static const adxl345_config_t at_100_hz = { 1000, 16, false, 0 };
 
 void hal_host_drdy_handler(void);
 
+static bool sample_as_main_claims; /* the sensor takes its next sample while main claims the bus */
+
 static unsigned torn_left; /* readings that arrive with a wrong FIFO_CTL */
 
 static uint8_t tear(uint8_t reg, uint8_t byte)
@@ -32,11 +34,21 @@ static uint8_t tear(uint8_t reg, uint8_t byte)
     return torn ? UINT8_MAX : byte;
 }
 
+static void on_stop_asked(void)
+{
+    if (sample_as_main_claims) {
+        sample_as_main_claims = false;
+        TEST_ASSERT_TRUE(adxl345_model_tick(hal_host_sensor(), rig.stream.rows[3000].lsb));
+    }
+}
+
 static void begin(double ppm)
 {
     torn_left = 0;
+    sample_as_main_claims = false;
     rig_begin(1e6 / PERIOD_US,
-              (hal_host_config_t){ .time_start_us = 0xFFFFFFFFu - 250000u, .ppm = ppm, .on_rx = tear });
+              (hal_host_config_t){
+                  .time_start_us = 0xFFFFFFFFu - 250000u, .ppm = ppm, .on_rx = tear, .on_stop_asked = on_stop_asked });
 }
 
 void setUp(void)
@@ -233,4 +245,50 @@ TEST(test_a_sample_after_an_empty_reading_came_when_it_was_due)
         hal_host_faults()->int1_high = false;
         TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
     }
+}
+
+/*
+ * An edge waits for main to judge the burst before it when INT1 bounces: the second edge reads that sample. The next
+ * one has no edge at all. It came one period later, not with the edge that waited.
+ */
+TEST(test_an_edge_that_waited_is_spent_by_the_edge_that_reads_its_sample)
+{
+    stream_for_ms(300);
+    size_t before = rig.taken_count;
+    away_until_held(1);
+    rig_away(BURST_US / 20u);
+    away_until_held(1);
+    TEST_ASSERT_EQUAL(READING_GOOD, adxl345_burst_judge());
+    TEST_ASSERT_FALSE(adxl345_burst_running());
+    hal_host_drdy_handler();
+    TEST_ASSERT_TRUE(adxl345_burst_running());
+    rig_away(BURST_US / 20u);
+    hal_host_faults()->int1_cut = true;
+    TEST_ASSERT_EQUAL(READING_GOOD, adxl345_burst_judge());
+    away_until_held(1);
+    hal_host_faults()->int1_cut = false;
+    pass_until_taken(before + 3);
+    TEST_ASSERT_TRUE(rig.off_us <= EXACT_US);
+    TEST_ASSERT_EQUAL_size_t(0, rig_lost(60));
+}
+
+/*
+ * Main looks for a sample that is overdue by half a period, and it comes while main claims the bus: the edge starts no
+ * burst beside main's, and the sample has the time of that edge.
+ */
+TEST(test_an_edge_while_main_claims_the_bus_gives_the_time)
+{
+    stream_for_ms(300);
+    adxl345_counters_t counters;
+    hal_host_sensor()->reg[ADXL345_POWER_CTL] = 0;
+    rig_away(3 * PASSES_PER_PERIOD / 2);
+    hal_host_sensor()->reg[ADXL345_POWER_CTL] = ADXL345_POWER_MEASURE;
+    sample_as_main_claims = true;
+    uint32_t now_us = hal_time_us();
+    adxl345_burst_read();
+    TEST_ASSERT_FALSE(sample_as_main_claims);
+    TEST_ASSERT_UINT32_WITHIN(EXACT_US, now_us, next_stamp_us());
+    rig_take_all();
+    adxl345_counters(&counters);
+    TEST_ASSERT_EQUAL_UINT16(0, counters.samples_drained);
 }

@@ -205,6 +205,16 @@ TEST(test_single_takes_the_offsets_from_the_nearest_position)
     }
 }
 
+/* The least mean that has a direction. */
+TEST(test_the_nearest_position_has_the_sign_of_any_mean)
+{
+    for (uint8_t position = 0; position < CALIBRATION_POSITIONS; position++) {
+        int16_t mean[3] = { 0, 0, 0 };
+        mean[position / 2U] = position % 2U == 0 ? 1 : -1;
+        TEST_ASSERT_EQUAL_UINT8(position, calibration_position(mean));
+    }
+}
+
 TEST(test_single_refuses_what_is_no_offset_and_keeps_the_old)
 {
     static const int16_t means[6][3] = { { 0, 0, 4096 + 1281 }, { 0, 0, -4096 - 1281 }, { 1281, 0, 4096 },
