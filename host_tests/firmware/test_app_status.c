@@ -7,6 +7,7 @@
 #include "adxl345_registers.h"
 #include "hal_i2c.h"
 #include "hal_sleep.h"
+#include "support/documented_limits.h"
 #include "support/talk.h"
 #include "support/test.h"
 
@@ -151,6 +152,20 @@ TEST(test_readings_that_were_none_are_told)
     ask();
     TEST_ASSERT_EQUAL_UINT(10, corrupted_reads);
     TEST_ASSERT_EQUAL_UINT(corrupted_reads, told("readings torn "));
+}
+
+/* docs/faults.md. One less than that is only counted. */
+TEST(test_torn_readings_in_a_row_are_fault_11)
+{
+    stream_t stream = board_noisy_stream(1000, 100.0, 1.5, 21u);
+    start(&stream, corrupt);
+    for (unsigned n = LIMIT_TORN - 1; n <= LIMIT_TORN; n++) {
+        reads_to_corrupt = n;
+        board_run_ms(200);
+        TEST_ASSERT_EQUAL_UINT(0, reads_to_corrupt);
+        TEST_ASSERT_EQUAL_size_t(n == LIMIT_TORN, board_notes_with("# fault 11: torn readings", 0));
+    }
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault", 0) - board_notes_with("# fault 11 over", 0));
 }
 
 static unsigned sources_with_overrun;
