@@ -247,6 +247,18 @@ TEST(test_a_sample_after_an_empty_reading_came_when_it_was_due)
     }
 }
 
+/* INT1 is high without an edge when the first sample is there: the start left no time of an edge that it could get. */
+TEST(test_a_first_sample_without_an_edge_has_the_time_at_which_it_was_found)
+{
+    hal_host_faults()->int1_cut = true;
+    adxl345_start(&at_100_hz);
+    rig_run_ms(5);
+    away_until_held(1);
+    hal_host_faults()->int1_cut = false;
+    pass_until_taken(1);
+    TEST_ASSERT_TRUE(rig.off_us <= EXACT_US);
+}
+
 /*
  * An edge waits for main to judge the burst before it when INT1 bounces: the second edge reads that sample. The next
  * one has no edge at all. It came one period later, not with the edge that waited.

@@ -154,6 +154,17 @@ TEST(test_readings_that_were_none_are_told)
     TEST_ASSERT_EQUAL_UINT(corrupted_reads, told("readings torn "));
 }
 
+/* docs/faults.md */
+TEST(test_a_register_that_lost_its_value_is_fault_4)
+{
+    board_start_resting();
+    board_run_ms(500);
+    hal_host_faults()->write_lost_register = ADXL345_BW_RATE;
+    (void)talk_typed("rate 50", 500);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault 4: a register lost its value", 0));
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# fault", 0));
+}
+
 /* docs/faults.md. One less than that is only counted. */
 TEST(test_torn_readings_in_a_row_are_fault_11)
 {
