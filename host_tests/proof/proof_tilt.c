@@ -4,20 +4,15 @@
 
 #include "tilt.h"
 
-/* The larger of the two has 15 bits, or both are 0. */
-#define LARGE(v) (0x4000 <= (v) <= 0x7FFF)
-#define SCALED_LEGS(o, a) \
-    ((LARGE(o) && LARGE(a)) || (LARGE(o) && (a) < 0x4000) || ((o) < 0x4000 && LARGE(a)) || ((o) == 0 && (a) == 0))
-
 /*@ requires \valid(o) && \valid(a) && \separated(o, a);
     assigns *o, *a, \result \from opposite, adjacent;
     ensures \initialized(o) && \initialized(a);
-    ensures SCALED_LEGS(*o, *a);
-    ensures -17 <= \result <= 14;
+    ensures *o <= 0x7FFF && *a <= 0x7FFF;
+    ensures 0 <= \result <= 17;
 */
-static int8_t scale_to_15_bits(uint32_t opposite, uint32_t adjacent, uint16_t *o, uint16_t *a);
+static uint8_t shorten_to_15_bits(uint32_t opposite, uint32_t adjacent, uint16_t *o, uint16_t *a);
 
-/*@ requires LARGE(large);
+/*@ requires 0 < large <= 0x7FFF;
     requires small <= 0x7FFF;
     assigns \result \from small, large;
 */
@@ -47,13 +42,13 @@ static uint32_t any_of_length(uint8_t bits)
 }
 
 /* One call for each pair of lengths in bits: the loops look for the leading bit. */
-void proof_scale_to_15_bits(void)
+void proof_shorten_to_15_bits(void)
 {
     for (uint8_t i = 0; i <= 32; i++) {
         for (uint8_t j = 0; j <= 32; j++) {
             uint16_t o;
             uint16_t a;
-            (void)scale_to_15_bits(any_of_length(i), any_of_length(j), &o, &a);
+            (void)shorten_to_15_bits(any_of_length(i), any_of_length(j), &o, &a);
         }
     }
 }
@@ -61,7 +56,7 @@ void proof_scale_to_15_bits(void)
 /* Options: -eva-slevel 1 -eva-min-loop-unroll 4 */
 void proof_fraction_uq16(void)
 {
-    (void)fraction_uq16(ANY_U16(0, 0x7FFF), ANY_U16(0x4000, 0x7FFF));
+    (void)fraction_uq16(ANY_U16(0, 0x7FFF), ANY_U16(1, 0x7FFF));
 }
 
 void proof_tilt_atan2_cdeg(void)

@@ -26,55 +26,31 @@
 typedef struct {
     uint16_t ratio_uq16;  /* smaller / larger leg */
     uint16_t ratio2_uq16; /* its square */
-    uint16_t larger;      /* larger leg times 2^shift: 2^14..2^15-1, or 0 if both legs are 0 */
-    int8_t shift;
-    bool steep; /* the opposite leg is the larger one */
+    uint16_t larger;      /* larger leg less its last bits: below 2^15 */
+    uint8_t dropped;      /* number of these bits */
+    bool steep;           /* the opposite leg is the larger one */
 } slope_t;
 
-/* Scales two numbers below 2^16 by the same power of two so that the larger has 15 bits; returns the exponent. */
-static int8_t scale_up(uint16_t *a, uint16_t *b)
+/*
+ * Drops bits of both numbers until they have 15; returns how many: an error below 2^-14 of the larger. Shorter ones stay
+ * as they are: ratio and length, rounded down, are the same in a larger scale.
+ */
+static uint8_t shorten_to_15_bits(uint32_t opposite, uint32_t adjacent, uint16_t *o, uint16_t *a)
 {
-    uint16_t p = *a;
-    uint16_t q = *b;
-    int8_t shift = 0;
-    if ((p | q) == 0U) {
-        return 0;
-    }
-    if (((p | q) & 0xFF80U) == 0U) {
-        p = (uint16_t)(p << 8);
-        q = (uint16_t)(q << 8);
-        shift = 8;
-    }
-    while (((p | q) & 0x4000U) == 0U) {
-        p = (uint16_t)(p << 1);
-        q = (uint16_t)(q << 1);
-        shift = (int8_t)(shift + 1);
-    }
-    *a = p;
-    *b = q;
-    return shift;
-}
-
-/* Scales any two numbers to 15 bits, as scale_up; bits shifted out are dropped: an error below 2^-14 of the larger. */
-static int8_t scale_to_15_bits(uint32_t opposite, uint32_t adjacent, uint16_t *o, uint16_t *a)
-{
-    int8_t shift = 0;
+    uint8_t dropped = 0;
     while (((uint16_t)((opposite | adjacent) >> 16) & 0xFF80U) != 0U) {
         opposite >>= 8;
         adjacent >>= 8;
-        shift = (int8_t)(shift - 8);
+        dropped = (uint8_t)(dropped + 8U);
     }
     for (uint8_t excess = (uint8_t)(((opposite | adjacent) << 1) >> 16); excess != 0U; excess >>= 1) {
         opposite >>= 1;
         adjacent >>= 1;
-        shift = (int8_t)(shift - 1);
+        dropped++;
     }
     *o = (uint16_t)opposite;
     *a = (uint16_t)adjacent;
-    if (shift == 0) {
-        shift = scale_up(o, a);
-    }
-    return shift;
+    return dropped;
 }
 
 /* One bit of a quotient: the remainder is below the divisor before and after. */
@@ -111,7 +87,7 @@ static void slope_of(slope_t *slope, uint32_t opposite, uint32_t adjacent)
 {
     uint16_t o;
     uint16_t a;
-    slope->shift = scale_to_15_bits(opposite, adjacent, &o, &a);
+    slope->dropped = shorten_to_15_bits(opposite, adjacent, &o, &a);
     slope->steep = o > a;
     slope->larger = slope->steep ? o : a;
     slope->ratio_uq16 = 0;
@@ -167,11 +143,7 @@ void tilt_angles(tilt_t *out, const int32_t a_q8[3])
     slope_of(&slope, filter_fx_abs32(y_q8), filter_fx_abs32(z_q8));
     uint32_t x = filter_fx_abs32(x_q8);
     uint16_t yz = slope_length(&slope);
-    if (slope.shift < 0) {
-        x >>= (uint8_t)(0 - slope.shift); /* convert x to the unit of yz: cheaper than the other way round */
-    } else {
-        yz = (uint16_t)(yz >> slope.shift);
-    }
+    x >>= slope.dropped; /* to the unit of yz: cheaper than the other way round */
     out->roll_undefined = yz < TILT_ROLL_MIN_Q8;
     if (!out->roll_undefined) {
         out->roll_cdeg = signed_cdeg(slope_cdeg(&slope), y_q8 < 0, z_q8 < 0);
