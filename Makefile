@@ -3,6 +3,8 @@
 .DELETE_ON_ERROR:
 MAKEFLAGS += --no-builtin-rules --no-print-directory
 SHELL := /bin/sh
+# where the folder was entered through a link, compilers would name the link
+export PWD := $(CURDIR)
 
 B := build
 PY := $(B)/venv/bin/python
@@ -50,7 +52,7 @@ AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -fshort-en
 # lines, which change a few bytes, and no variables, which would change 50 of code through link-time optimisation: every program below,
 # flashed, tested, profiled or traced, is the same bits. Nor the folder's name: the linker's relaxation keeps a redundant `ret` whose address
 # equals the offset of some debug string, so with that name an image would depend on its length
-AVR_DEBUG   := -gdwarf-2 -g1 -gno-record-gcc-switches -fdebug-prefix-map='$(CURDIR)=.'
+AVR_DEBUG   := -gdwarf-2 -g1 -gno-record-gcc-switches -fdebug-prefix-map='$(subst ','\'',$(CURDIR))=.'
 AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=$(CPU_HZ)UL $(AVR_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr $(FILTER_FLAG)
 # calls within 4 KB take half the bytes: functions.ld orders the functions so that most calls are (mk/scripts/layout.py)

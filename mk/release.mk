@@ -8,10 +8,8 @@ RELEASE_8MHZ  := small=$(R)/promini-8mhz/firmware.hex $(foreach s,$(filter-out e
 RELEASE_HEX   := $(subst =,-16mhz=,$(RELEASE_16MHZ)) $(subst =,-8mhz=,$(RELEASE_8MHZ))
 RELEASE_DEMO  := $(R)/tilt-demo.html
 release_of     = $(filter $(R)/$(1)/%,$(foreach named,$(RELEASE_16MHZ) $(RELEASE_8MHZ),$(lastword $(subst =, ,$(named)))))
-# The linker's relaxation keeps a redundant `ret` whose address equals the offset of some debug string, so an image depends on the length of the
-# folder's name. Here the debug information does not have that name; so the images have a folder of their own.
-NAMELESS      := -gno-record-gcc-switches -fdebug-prefix-map=$(CURDIR)=.
-release_make   = $(MAKE) -j2 BOARD=$(1) U=$(R)/$(1) FILTERS=$(2) AVR_DEBUG='$(AVR_DEBUG) $(NAMELESS)' DEMO=$(RELEASE_DEMO)
+# in folders of its own, so that no object of another build gets in
+release_make   = $(MAKE) -j2 BOARD=$(1) U=$(R)/$(1) FILTERS=$(2) DEMO=$(RELEASE_DEMO)
 # what the wheel's C is compiled with where it is first used
 LIBTILT_ARGS  := $(R)/libtilt.args
 

@@ -49,7 +49,7 @@ SCRIPTS = [
     plain("test_papers", "paper_programs"), plain("test_papers_synthesis", "paper_programs"), plain("test_papers_verdicts", "paper_programs"),
     packages("test_figures", "paper_programs"), packages("test_comparison", "paper_programs"), plain("test_schedule"),
     plain("test_pages"), plain("test_page_sources"), plain("test_steps"), plain("test_make_words"), plain("test_proved"),
-    plain("test_default"), plain("test_default_streams"), plain("test_images", "system_images"),
+    plain("test_default"), plain("test_default_streams"), plain("test_images", "build/uno/firmware.elf"),
     plain("test_run_tests", "system_images"), plain("test_faults", "system_images"),
     plain("test_clients", "client_images"), plain("test_model_elsewhere"),
     plain("test_release", "flashtest_images", "build/library/tilt-filters.zip", "build/release/libtilt.args", "build/host/libtilt.so"),

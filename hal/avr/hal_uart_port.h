@@ -1,7 +1,7 @@
 /*
  * In double-speed mode (F_CPU / 8) a frame tolerates a clock error of 2.2 % (115200 at 16 MHz and 57600 at 8 MHz are
  * 2.12 % too fast). A byte must last at least 160 cycles, because its interrupts take most of them. The divider is one
- * byte, for at least 7,813 baud at 16 MHz.
+ * byte.
  */
 #ifndef HAL_UART_PORT_H
 #define HAL_UART_PORT_H

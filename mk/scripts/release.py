@@ -57,10 +57,10 @@ def boards_for(name, path):
 
 
 def judge_nameless(path):
-    """An image whose debug information names this folder is another one in another folder (mk/release.mk)."""
+    """An image whose debug information names this folder is another one in another folder (AVR_DEBUG in the Makefile)."""
     elf = pathlib.Path(path).with_suffix(".elf")
     if elf.is_file() and os.fsencode(os.getcwd()) in elf.read_bytes():
-        sys.exit(f"release: {elf} has this folder's name in it, so its code depends on the name: build it by make dist")
+        sys.exit(f"release: {elf} has this folder's name in it, so its code depends on the name (AVR_DEBUG in the Makefile)")
 
 
 def notes(hexes):

@@ -36,6 +36,7 @@ OVER = "# fault {} over: after 1500 ms, 150 lost, sensor at 0x53"
 JUDGES = {check.key: check.judge for check in CHECKS}
 GONE, BACK = "GONE", "BACK"
 HEARD_BYTES = 100_000
+START_S = 60  # of a PC that may be busy
 
 
 def banner(cause="reset button or serial port opened", kept="as saved"):
@@ -228,9 +229,14 @@ class Simulated:
 
     def let_it_start(self):
         """Until rows come. Nobody hears its first banner: with the one after a reset, a busy machine would hear two."""
-        heard = b""
-        while not re.search(rb"\n\d+,[-0-9,]+\r?\n", heard):
-            heard += os.read(self.fd, 4096)
+        rest, until_s = b"", time.monotonic() + START_S
+        while not re.search(rb"\n\d+,[-0-9,]+\r?\n", rest):
+            readable = select.select([self.fd], [], [], max(0.0, until_s - time.monotonic()))[0]
+            data = os.read(self.fd, 4096) if readable else b""
+            if not data:
+                self.end()
+                raise AssertionError(f"simrun has ended, or sent no row within {START_S} s: {rest[-200:]}")
+            rest = rest[-200:] + data
 
     def write(self, data):
         self.typed += os.write(self.fd, data)
