@@ -32,8 +32,8 @@ typedef struct {
 } slope_t;
 
 /*
- * Drops bits of both numbers until they have 15; returns how many: an error below 2^-14 of the larger. Shorter ones stay
- * as they are: ratio and length, rounded down, are the same in a larger scale.
+ * Drops bits of both numbers until they have 15; returns how many: an error below 2^-14 of the larger. Shorter ones
+ * stay as they are: ratio and length, rounded down, are the same in a larger scale.
  */
 static uint8_t shorten_to_15_bits(uint32_t opposite, uint32_t adjacent, uint16_t *o, uint16_t *a)
 {
