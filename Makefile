@@ -3,7 +3,7 @@
 .DELETE_ON_ERROR:
 MAKEFLAGS += --no-builtin-rules --no-print-directory
 SHELL := /bin/sh
-# where the folder was entered through a link, compilers would name the link
+# compilers name the folder as PWD does: not by a link through which it was entered
 export PWD := $(CURDIR)
 
 B := build
@@ -50,8 +50,8 @@ AVR_SMALL   := -Os -flto -flto-partition=one -mrelax -mcall-prologues -fshort-en
                -fno-tree-dominator-opts -fno-tree-switch-conversion -fno-forward-propagate \
                -fno-tree-loop-ivcanon -fno-tree-scev-cprop -fno-tree-copy-prop -fno-move-loop-invariants -frename-registers -fno-jump-tables -mstrict-X -fno-if-conversion -fno-guess-branch-probability -fno-strict-aliasing -fno-gcse-lm -fno-tree-dce -fno-tree-pre -fno-ssa-phiopt
 # lines, which change a few bytes, and no variables, which would change 50 of code through link-time optimisation: every program below,
-# flashed, tested, profiled or traced, is the same bits. Nor the folder's name: the linker's relaxation keeps a redundant `ret` whose address
-# equals the offset of some debug string, so with that name an image would depend on its length
+# flashed, tested, profiled or traced, is the same bits. The folder's name is left out too: the linker's relaxation keeps a redundant `ret` whose
+# address equals the offset of some debug string, so an image would depend on the length of that name
 AVR_DEBUG   := -gdwarf-2 -g1 -gno-record-gcc-switches -fdebug-prefix-map='$(subst ','\'',$(CURDIR))=.'
 AVR_FLAGS    = -std=gnu11 -mmcu=atmega328p -DF_CPU=$(CPU_HZ)UL $(AVR_SMALL) $(AVR_DEBUG) -ffunction-sections -fdata-sections $(WARNINGS) \
                $(INCLUDES) -Ihal/avr $(FILTER_FLAG)

@@ -11,6 +11,8 @@
 
 enum { TX_SIZE = HAL_UART_TX_SIZE, RX_SIZE = HAL_UART_RX_SIZE, TX_MASK = TX_SIZE - 1, RX_MASK = RX_SIZE - 1 };
 
+_Static_assert(HAL_UART_REACHES(F_CPU / 8 / 256) && !HAL_UART_REACHES(F_CPU / 8 / 260), "the divider is one byte");
+
 static uint8_t tx_buffer[TX_SIZE];
 static uint8_t rx_buffer[RX_SIZE];
 static hal_ring_t tx;

@@ -22,7 +22,7 @@ typedef struct {
     void (*on_latched)(uint64_t t_us, size_t row, const int16_t lsb[3]); /* the sensor took a sample; may be NULL */
     uint8_t (*on_rx)(uint8_t reg, uint8_t byte); /* may change a byte read from a register; NULL: unchanged */
     void (*on_bus_clear)(void);  /* the bus is being cleared, interrupts on: what happens meanwhile; may be NULL */
-    void (*on_stop_asked)(void); /* is the last STOP out? what happens just before the answer; may be NULL */
+    void (*on_stop_asked)(void); /* main asks for the last STOP: what happens just before the answer; may be NULL */
 } hal_host_config_t;
 
 /* Bus and wiring faults that a test can set at any time. */

@@ -21,7 +21,7 @@ from tilt.realboard import judges_alone, judges_starts, judges_wires, owner, wat
 from tilt.realboard.checks import CHECKS  # noqa: E402
 
 REST = "sim/streams/rest-2lsb.csv"
-# shorter, and as simulated time may wait for a PC that is busy
+# shorter; longer or wider where simulated time may wait for a PC that is busy
 SHORTER = ((judges_alone, "RATE_S", 3.0), (judges_alone, "CLOCK_PPM", 10**6), (judges_alone, "FAST_S", 2.0), (judges_alone, "BAUD_S", 0.8),
            (judges_alone, "BAUD_ROWS", 3), (judges_wires, "INT1_S", 1.0), (judges_wires, "FINGER_S", 1.5), (judges_starts, "KEPT_OFF_S", 0.5),
            (judges_starts, "SAVED_S", 60.0), (watch, "EDGE_S", 0.2), (watch, "HEARD_SHARE", 0.1), (watch, "QUIET_S", 0.6), (watch, "STRETCH_S", 0.6))
