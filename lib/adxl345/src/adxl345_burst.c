@@ -103,9 +103,7 @@ void adxl345_burst_init(void)
     b->tail = 0;
     b->mode = BURST_IGNORE;
     b->on_bus = 0;
-    b->failures = 0;
     b->edge_waiting = 0;
-    b->last_known = false;
     b->bus.state = I2C_BUS_IDLE;
     hal_irq_restore(state);
 }
