@@ -197,3 +197,48 @@ TEST(test_a_refusal_tells_rate_and_combinations_apart)
     config.value[parameter_named(light_kind(), "a1")] = -65000; /* outside the stability region */
     TEST_ASSERT_EQUAL_UINT8(FILTER_REFUSED_TOGETHER, filter_init(&f, light, &config));
 }
+
+/* The gain at which a filter settles with this q, and whether it says that q is limited. */
+static uint16_t settled_gain(const filter_law_t *law, filter_config_t config, uint8_t q, int32_t value, bool *limited)
+{
+    filter_t f;
+    filter_probe_t probe;
+    config.value[q] = value;
+    TEST_ASSERT_EQUAL_UINT8(FILTER_ACCEPTED, filter_init(&f, law, &config));
+    filter_reset(&f, 0);
+    (void)filter_update(&f, 0);
+    filter_probe(&f, &probe);
+    *limited = filter_limited(&f);
+    return probe.gain_uq16;
+}
+
+/* Ten times the q gives the same gain if both are said to be limited, and another one if neither is. */
+TEST(test_a_limited_q_is_said)
+{
+    static const uint16_t rates_dhz[] = { 125, 1000, 8000, 32000 };
+    static const int32_t noises_lsb2_q8[] = { FILTER_R_MIN_LSB2_Q8, 768, 256 * 1000 };
+    unsigned within = 0;
+    unsigned beyond = 0;
+    for (int kind = 0; kind < FILTER_KIND_COUNT; kind++) {
+        const filter_law_t *law = filter_listed((filter_kind_t)kind);
+        uint8_t q = parameter_named((filter_kind_t)kind, "q");
+        for (size_t i = 0; q != FILTER_PARAMETERS_MAX && i < 12; i++) {
+            filter_config_t config = filter_defaults(law, rates_dhz[i / 3]);
+            config.value[parameter_named((filter_kind_t)kind, "r")] = noises_lsb2_q8[i % 3];
+            bool limited_before;
+            uint16_t before = settled_gain(law, config, q, 1, &limited_before);
+            for (uint32_t value = 10; value <= 1000000000u; value *= 10u) {
+                bool limited;
+                uint16_t gain = settled_gain(law, config, q, (int32_t)value, &limited);
+                if (limited == limited_before) {
+                    TEST_ASSERT_EQUAL_MESSAGE(limited, gain == before, filter_name(law));
+                }
+                within += !limited;
+                beyond += limited;
+                limited_before = limited;
+                before = gain;
+            }
+        }
+    }
+    TEST_ASSERT_TRUE(within > 100 && beyond > 100);
+}

@@ -295,11 +295,20 @@ void proof_filter_own_noise_lsb2_q8(void)
     (void)filter_own_noise_lsb2_q8(&f);
 }
 
+void proof_filter_limited(void)
+{
+    filter_t f;
+    any_law(0);
+    any_filter(&f, FILTER_RUNNING, 1024);
+    f.limited = ANY_BOOL();
+    (void)filter_limited(&f);
+}
+
 void proof_filter_reset(void)
 {
     filter_t f;
     for (uint8_t settles = 0; settles < 2U; settles++) {
-        any_law((settles != 0U) ? LAW_SETTLES : 0);
+        any_law((settles != 0U) ? LAW_COVARIANCE : 0);
         EACH_START(collected)
         {
             any_filter(&f, collected, 1024);

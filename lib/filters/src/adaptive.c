@@ -386,8 +386,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     }
 }
 
-const filter_law_t filter_law_adaptive IN_FLASH = { .name = "adaptive",
-                                                    .parameter_count = 7,
+const filter_law_t filter_law_adaptive IN_FLASH = { .parameter_count = 7,
                                                     .traits = LAW_FINE_RATE | LAW_GATED,
                                                     .worst_cycles = 1300,
                                                     .parameters = parameters,
@@ -397,4 +396,5 @@ const filter_law_t filter_law_adaptive IN_FLASH = { .name = "adaptive",
                                                     .own_noise = own_noise,
                                                     .start = start,
                                                     .step = step,
-                                                    .report = LAW_REPORT(report) };
+                                                    .report = LAW_REPORT(report),
+                                                    .name = "adaptive" };

@@ -291,8 +291,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     }
 }
 
-const filter_law_t filter_law_auto IN_FLASH = { .name = "auto",
-                                                .parameter_count = 6,
+const filter_law_t filter_law_auto IN_FLASH = { .parameter_count = 6,
                                                 .traits = LAW_GATED,
                                                 .worst_cycles = 2690,
                                                 .parameters = parameters,
@@ -302,4 +301,5 @@ const filter_law_t filter_law_auto IN_FLASH = { .name = "auto",
                                                 .start = start,
                                                 .step = step,
                                                 .fade = fade,
-                                                .report = LAW_REPORT(report) };
+                                                .report = LAW_REPORT(report),
+                                                .name = "auto" };

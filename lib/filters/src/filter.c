@@ -33,6 +33,11 @@ void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8)
     LAW_OF(f, set_noise)(f, filter_tracker_limited_r(r_lsb2_q8));
 }
 
+bool filter_limited(const filter_t *f)
+{
+    return f->limited;
+}
+
 uint32_t filter_own_noise_lsb2_q8(const filter_t *f)
 {
     uint32_t (*own)(const filter_t *) = LAW_OF(f, own_noise);
@@ -58,7 +63,7 @@ void filter_reset(filter_t *f, int16_t z0_lsb)
     f->previous_lsb = z0;
     f->x_lsb_q16 = (int32_t)z0 * 65536;
     start(f, true);
-    if ((traits(f) & LAW_SETTLES) != 0U) {
+    if ((traits(f) & LAW_COVARIANCE) != 0U) {
         for (uint8_t step = SETTLE_STEPS; step != 0U; step--) {
             LAW_OF(f, step)(f, z0, STEP_SETTLE);
         }

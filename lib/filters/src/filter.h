@@ -181,6 +181,12 @@ filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_c
 void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8);
 
 /*
+ * The configured q does not apply: over the R in force it is beyond what the law's numbers hold, and the process noise
+ * is at that limit. Changes with R. Always false for a law without q.
+ */
+bool filter_limited(const filter_t *f);
+
+/*
  * The R that a law has identified itself, LSB^2 in Q8, at most 10,200 LSB^2. Such a law needs no filter_set_noise and
  * no noise estimate beside it. 0: the law uses the R that is set. About 80 cycles.
  */

@@ -47,24 +47,24 @@ static void lrf_set_noise(filter_t *f, uint32_t r_lsb2_q8)
     filter_kalman_set_variance(f, (r_mixed_lsb2_q8 > LRF_R_MAX_LSB2_Q8) ? LRF_R_MAX_LSB2_Q8 : r_mixed_lsb2_q8);
 }
 
-const filter_law_t filter_law_kf IN_FLASH = { .name = "kf",
-                                              .parameter_count = 2,
-                                              .traits = LAW_COVARIANCE | LAW_SETTLES,
+const filter_law_t filter_law_kf IN_FLASH = { .parameter_count = 2,
+                                              .traits = LAW_COVARIANCE,
                                               .worst_cycles = 1080,
                                               .parameters = parameters,
                                               .set_up = kf_set_up,
                                               .set_noise = filter_kalman_set_variance,
                                               .start = filter_kalman_start,
                                               .step = step,
-                                              .report = LAW_REPORT(filter_kalman_report) };
+                                              .report = LAW_REPORT(filter_kalman_report),
+                                              .name = "kf" };
 
-const filter_law_t filter_law_lrf IN_FLASH = { .name = "lrf",
-                                               .parameter_count = 4,
-                                               .traits = LAW_COVARIANCE | LAW_SETTLES,
+const filter_law_t filter_law_lrf IN_FLASH = { .parameter_count = 4,
+                                               .traits = LAW_COVARIANCE,
                                                .worst_cycles = 1080,
                                                .parameters = parameters,
                                                .set_up = lrf_set_up,
                                                .set_noise = lrf_set_noise,
                                                .start = filter_kalman_start,
                                                .step = step,
-                                               .report = LAW_REPORT(filter_kalman_report) };
+                                               .report = LAW_REPORT(filter_kalman_report),
+                                               .name = "lrf" };

@@ -72,7 +72,7 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
     k->r_lsb2_q8 = r_lsb2_q8;
     fx_scaled_t r_lsb2 = filter_kalman_scaled_r(r_lsb2_q8);
     uint32_t most = k->fine ? Q33_MAX_FINE_UQ28 : ONE_UQ28;
-    k->q33_uq28 = filter_kalman_per_r(k->drive_lsb2, r_lsb2, 28, Q33_MIN_UQ28, most);
+    k->q33_uq28 = filter_kalman_drive_per_r(f, k->drive_lsb2, r_lsb2, 28, Q33_MIN_UQ28, most);
     k->p22_start_uq28 = filter_kalman_per_r(k->start_lsb2, r_lsb2, 28, k->q33_uq28, P22_START_MAX_UQ28);
 }
 
@@ -295,9 +295,8 @@ static void report(const filter_t *f, filter_probe_t *out)
     out->p_lsb2_q8 = (filter_fx_mul_uq24(p11_uq28, k->r_lsb2_q8) + 8U) >> 4;
 }
 
-const filter_law_t filter_law_kf3 IN_FLASH = { .name = "kf3",
-                                               .parameter_count = 2,
-                                               .traits = LAW_COVARIANCE | LAW_SETTLES,
+const filter_law_t filter_law_kf3 IN_FLASH = { .parameter_count = 2,
+                                               .traits = LAW_COVARIANCE,
                                                .worst_cycles = 2390,
                                                .parameters = parameters,
                                                .set_up = set_up,
@@ -305,4 +304,5 @@ const filter_law_t filter_law_kf3 IN_FLASH = { .name = "kf3",
                                                .start = start,
                                                .step = step,
                                                .fade = fade,
-                                               .report = LAW_REPORT(report) };
+                                               .report = LAW_REPORT(report),
+                                               .name = "kf3" };

@@ -287,9 +287,8 @@ static void shortened_step(filter_t *f, int16_t z_lsb, uint8_t what)
     mixed(f, z_lsb, what, true);
 }
 
-const filter_law_t filter_law_pbf IN_FLASH = { .name = "pbf",
-                                               .parameter_count = 5,
-                                               .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
+const filter_law_t filter_law_pbf IN_FLASH = { .parameter_count = 5,
+                                               .traits = LAW_COVARIANCE | LAW_GATED,
                                                .worst_cycles = 3650,
                                                .parameters = parameters,
                                                .together = together,
@@ -297,11 +296,11 @@ const filter_law_t filter_law_pbf IN_FLASH = { .name = "pbf",
                                                .set_noise = filter_wide_set_noise,
                                                .start = start,
                                                .step = step,
-                                               .report = LAW_REPORT(filter_wide_report) };
+                                               .report = LAW_REPORT(filter_wide_report),
+                                               .name = "pbf" };
 
-const filter_law_t filter_law_shrf IN_FLASH = { .name = "shrf",
-                                                .parameter_count = 5,
-                                                .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
+const filter_law_t filter_law_shrf IN_FLASH = { .parameter_count = 5,
+                                                .traits = LAW_COVARIANCE | LAW_GATED,
                                                 .worst_cycles = 3650,
                                                 .parameters = parameters,
                                                 .together = together,
@@ -309,11 +308,11 @@ const filter_law_t filter_law_shrf IN_FLASH = { .name = "shrf",
                                                 .set_noise = filter_wide_set_noise,
                                                 .start = start,
                                                 .step = shortened_step,
-                                                .report = LAW_REPORT(filter_wide_report) };
+                                                .report = LAW_REPORT(filter_wide_report),
+                                                .name = "shrf" };
 
-const filter_law_t filter_law_af IN_FLASH = { .name = "af",
-                                              .parameter_count = 4,
-                                              .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
+const filter_law_t filter_law_af IN_FLASH = { .parameter_count = 4,
+                                              .traits = LAW_COVARIANCE | LAW_GATED,
                                               .worst_cycles = 4350,
                                               .parameters = parameters,
                                               .standard = af_standard,
@@ -321,4 +320,5 @@ const filter_law_t filter_law_af IN_FLASH = { .name = "af",
                                               .set_noise = filter_wide_set_noise,
                                               .start = start,
                                               .step = step,
-                                              .report = LAW_REPORT(filter_wide_report) };
+                                              .report = LAW_REPORT(filter_wide_report),
+                                              .name = "af" };

@@ -194,9 +194,8 @@ static void report(const filter_t *f, filter_probe_t *out)
     }
 }
 
-const filter_law_t filter_law_soft IN_FLASH = { .name = "soft",
-                                                .parameter_count = 6,
-                                                .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
+const filter_law_t filter_law_soft IN_FLASH = { .parameter_count = 6,
+                                                .traits = LAW_COVARIANCE | LAW_GATED,
                                                 .worst_cycles = 1695,
                                                 .parameters = parameters,
                                                 .standard = standard,
@@ -205,4 +204,5 @@ const filter_law_t filter_law_soft IN_FLASH = { .name = "soft",
                                                 .set_noise = filter_kalman_set_noise_gated,
                                                 .start = filter_kalman_start,
                                                 .step = step,
-                                                .report = LAW_REPORT(report) };
+                                                .report = LAW_REPORT(report),
+                                                .name = "soft" };

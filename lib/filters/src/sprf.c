@@ -65,9 +65,8 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     }
 }
 
-const filter_law_t filter_law_sprf IN_FLASH = { .name = "sprf",
-                                                .parameter_count = 5,
-                                                .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_GATED,
+const filter_law_t filter_law_sprf IN_FLASH = { .parameter_count = 5,
+                                                .traits = LAW_COVARIANCE | LAW_GATED,
                                                 .worst_cycles = 1230,
                                                 .parameters = parameters,
                                                 .standard = standard,
@@ -76,4 +75,5 @@ const filter_law_t filter_law_sprf IN_FLASH = { .name = "sprf",
                                                 .set_noise = filter_kalman_set_noise_gated,
                                                 .start = filter_kalman_start,
                                                 .step = step,
-                                                .report = LAW_REPORT(filter_kalman_report) };
+                                                .report = LAW_REPORT(filter_kalman_report),
+                                                .name = "sprf" };

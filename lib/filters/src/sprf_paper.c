@@ -37,14 +37,13 @@ static void step(filter_t *f, int16_t z_lsb, uint8_t what)
     }
 }
 
-const filter_law_t filter_law_sprf_paper IN_FLASH = { .name = "sprf_paper",
-                                                      .parameter_count = 3,
-                                                      .traits = LAW_COVARIANCE | LAW_SETTLES | LAW_FIRST_SAMPLE |
-                                                                LAW_GATED,
+const filter_law_t filter_law_sprf_paper IN_FLASH = { .parameter_count = 3,
+                                                      .traits = LAW_COVARIANCE | LAW_FIRST_SAMPLE | LAW_GATED,
                                                       .worst_cycles = 2250,
                                                       .parameters = parameters,
                                                       .set_up = set_up,
                                                       .set_noise = filter_wide_set_noise,
                                                       .start = filter_wide_start,
                                                       .step = step,
-                                                      .report = LAW_REPORT(filter_wide_report) };
+                                                      .report = LAW_REPORT(filter_wide_report),
+                                                      .name = "sprf_paper" };

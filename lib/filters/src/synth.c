@@ -128,8 +128,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     }
 }
 
-const filter_law_t filter_law_synth IN_FLASH = { .name = "synth",
-                                                 .parameter_count = 4,
+const filter_law_t filter_law_synth IN_FLASH = { .parameter_count = 4,
                                                  .worst_cycles = 745,
                                                  .parameters = parameters,
                                                  .together = together,
@@ -138,4 +137,5 @@ const filter_law_t filter_law_synth IN_FLASH = { .name = "synth",
                                                  .start = filter_synth_start,
                                                  .step = step,
                                                  .fade = filter_synth_fade,
-                                                 .report = LAW_REPORT(report) };
+                                                 .report = LAW_REPORT(report),
+                                                 .name = "synth" };

@@ -129,8 +129,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     }
 }
 
-const filter_law_t filter_law_synth_opt IN_FLASH = { .name = "synth_opt",
-                                                     .parameter_count = 4,
+const filter_law_t filter_law_synth_opt IN_FLASH = { .parameter_count = 4,
                                                      .worst_cycles = 745,
                                                      .parameters = parameters,
                                                      .standard = standard,
@@ -139,4 +138,5 @@ const filter_law_t filter_law_synth_opt IN_FLASH = { .name = "synth_opt",
                                                      .start = filter_synth_start,
                                                      .step = step,
                                                      .fade = filter_synth_fade,
-                                                     .report = LAW_REPORT(report) };
+                                                     .report = LAW_REPORT(report),
+                                                     .name = "synth_opt" };

@@ -287,8 +287,7 @@ static void report(const filter_t *f, filter_probe_t *out)
     }
 }
 
-const filter_law_t filter_law_synth_plus IN_FLASH = { .name = "synth_plus",
-                                                      .parameter_count = 5,
+const filter_law_t filter_law_synth_plus IN_FLASH = { .parameter_count = 5,
                                                       .worst_cycles = 745,
                                                       .parameters = parameters,
                                                       .standard = standard,
@@ -298,4 +297,5 @@ const filter_law_t filter_law_synth_plus IN_FLASH = { .name = "synth_plus",
                                                       .start = filter_synth_start,
                                                       .step = step,
                                                       .fade = fade,
-                                                      .report = LAW_REPORT(report) };
+                                                      .report = LAW_REPORT(report),
+                                                      .name = "synth_plus" };

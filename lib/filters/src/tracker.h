@@ -19,8 +19,7 @@ extern "C" {
 
 /* Properties of a law, beside its functions. */
 enum filter_trait {
-    LAW_COVARIANCE = 0x01,   /* its state begins with filter_covariance_t, which is damped with the rate */
-    LAW_SETTLES = 0x02,      /* for filter_reset the covariance is settled by updates */
+    LAW_COVARIANCE = 0x01,   /* its state begins with filter_covariance_t: damped with the rate, settled by a reset */
     LAW_FINE_RATE = 0x04,    /* rate in Q24 */
     LAW_FIRST_SAMPLE = 0x08, /* starts on the first sample, as published, not on the median of five */
     LAW_GATED = 0x10         /* can refuse samples */
@@ -29,9 +28,15 @@ enum filter_trait {
 /* What a step gets: no sample, prediction only; a sample; a sample only for the covariance to settle (filter_reset). */
 enum filter_step_kind { STEP_MISSING, STEP_SAMPLE, STEP_SETTLE };
 
+/* Frama-C cannot initialise a member without a size. */
+#ifndef __FRAMAC__
+#define LAW_NAME_SIZE
+#else
+#define LAW_NAME_SIZE 12
+#endif
+
 /* Lives in program memory. */
 struct filter_law {
-    char name[12];
     uint8_t parameter_count;
     uint8_t traits;
     uint16_t worst_cycles;                           /* of filter_update; `make bench` of the project checks it */
@@ -45,6 +50,7 @@ struct filter_law {
     void (*step)(filter_t *f, int16_t z_lsb, uint8_t what); /* one sample; what: filter_step_kind; flags are clear */
     void (*fade)(filter_t *f, bool first); /* samples begin to be missing, or the rate was halved; or NULL */
     void (*report)(const filter_t *f, filter_probe_t *out); /* variance and gate */
+    char name[LAW_NAME_SIZE];                               /* NUL-terminated, and as long as it is */
 };
 
 /*
