@@ -15,7 +15,9 @@ SAY_FILTERS          := $(if $(filter-out 32256,$(BOARD_FLASH)),$(if $(filter sm
 
 CHOSEN_FILTERS := $(or $(FILTERS_$(strip $(FILTERS))),$(FILTERS))
 IMAGE_FILTERS   = $(FILTERS_everyday)
+ELSEWHERE       = $(filter-out $(IMAGE_FILTERS),$(foreach s,$(FILTER_SETS),$(FILTERS_$(s))))
 FILTER_FLAG     = '-DFILTER_LIST(X)=$(foreach f,$(IMAGE_FILTERS),X($(f)))' \
+                  $(if $(ELSEWHERE),'-DFILTERS_ELSEWHERE(X)=$(foreach f,$(ELSEWHERE),X($(f)))') \
                   $(if $(filter auto,$(IMAGE_FILTERS)),-DSUPERVISOR=1,-DFILTER_WITHOUT_PROBE)
 
 # the image that holds a filter: the chosen one if it does, else that of the first set that does

@@ -7,12 +7,10 @@ FUZZ_COMMON  := fuzz_support fuzz_protocol fuzz_said fuzz_parameters
 FUZZ_LINKED  := $(FUZZ_COMMON:%=$(FZ)/%.o) $(LAW_SUPPORT:host_tests/%.c=$(FZ)/%.o) $(FZ)/fuzz_drive.o $(FZ)/fuzz_mutate.o $(FZ)/fuzz_dictionary.o
 FUZZ_BIN     := $(FUZZ_TARGETS:%=$(FZ)/fuzz_%)
 FUZZ_LIBFUZZER := $(FUZZ_TARGETS:%=$(FZ)/libfuzzer_%)
-# contains all fourteen filters: the refusal that lists them has 139 bytes
-FUZZ_LONG    := -DTEXT_LINE_MAX=144u
-FUZZ_GCC     := $(HOST_CC) $(HOST_FLAGS) $(FUZZ_LONG) -Ihost_tests/fuzz $(WARNINGS) $(SANITIZE)
+FUZZ_GCC     := $(HOST_CC) $(HOST_FLAGS) -Ihost_tests/fuzz $(WARNINGS) $(SANITIZE)
 # CLANG='clang-14 ...' uses that one; CLANG= uses none
 CLANG        ?= $(firstword $(foreach c,clang clang-19 clang-16 clang-15 clang-14,$(shell command -v $(c))))
-FUZZ_CLANG   = $(CLANG) $(HOST_FLAGS) $(FUZZ_LONG) -Ihost_tests/fuzz $(SANITIZE) -fsanitize=fuzzer-no-link
+FUZZ_CLANG   = $(CLANG) $(HOST_FLAGS) -Ihost_tests/fuzz $(SANITIZE) -fsanitize=fuzzer-no-link
 SECONDS      ?= 20
 SEED         ?= 1
 

@@ -206,6 +206,7 @@ static bool filter_samples(void)
         loop.look_at_rate = false;
         pipeline_second(adxl345_period_us());
         sensor_watch_second();
+        control_second();
         return true;
     }
     return control_follow(loop.pass_us) || next_sample();

@@ -55,7 +55,8 @@
     REPLY(BUSY, "refused 10: busy measuring") \
     REPLY(FAULT_BEGIN, "fault " V_SUBJECT ": " V_FAULT_WORDS) \
     REPLY(FAULT_END, "fault " V_SUBJECT " over: after " V_OUTAGE_MS " ms, " V_OUTAGE_LOST \
-      " lost, sensor at 0x" V_OUTAGE_ADDRESS)
+      " lost, sensor at 0x" V_OUTAGE_ADDRESS) \
+    REPLY(LIMITED, "q is limited by r")
 /* clang-format on */
 
 #endif

@@ -16,7 +16,7 @@
 #include "settings/settings_table.h"
 #include "settings/store.h"
 
-_Static_assert(TEXT_FAULT_END - TEXT_BANNER == (int)NOTICE_FAULT_END, "a text for each reply");
+_Static_assert(TEXT_LIMITED - TEXT_BANNER == (int)NOTICE_LIMITED, "a text for each reply");
 _Static_assert(TEXT_REPEATED - TEXT_HOLD_STILL == MEASURE_REPEATED - MEASURE_BEGUN, "words for each outcome");
 _Static_assert(TEXT_NO_GRAVITY - TEXT_TILTED == CALIBRATION_NO_GRAVITY - CALIBRATION_TILTED, "words for each verdict");
 

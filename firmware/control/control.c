@@ -3,6 +3,7 @@
 
 #include "adxl345.h"
 #include "base/health.h"
+#include "base/notices.h"
 #include "control/measure.h"
 #include "path/coast.h"
 #include "path/pipeline.h"
@@ -20,6 +21,7 @@ enum { CHANGE_FILTER = 1, CHANGE_CONFIG = 2, CHANGE_COLD = 4, CHANGE_MEASURE = 8
 static struct {
     bool sampling; /* wanted: after go or start-up, not after stop */
     bool line_waits;
+    bool limit_told; /* NOTICE_LIMITED, since the sample path was changed */
     uint8_t changes; /* still to be followed */
 } control;
 
@@ -33,6 +35,7 @@ static void start_sensor(void)
 
 static void change_pipeline(void)
 {
+    control.limit_told = false;
     pipeline_change(&settings()->choice, settings()->rate_dhz, settings()->range_g);
 }
 
@@ -151,6 +154,17 @@ bool control_follow(uint32_t now_us)
         change_pipeline();
     }
     return now != 0;
+}
+
+/* Estimates of R move the limit: it is reported once, not each time. */
+void control_second(void)
+{
+    const tilt_axis_t *axis = pipeline_axes();
+    for (uint8_t left = 3; left != 0; left--, axis++) {
+        if (filter_limited(&axis->filter) && !control.limit_told) {
+            control.limit_told = notices_add(NOTICE_LIMITED, 0);
+        }
+    }
 }
 
 /* No sample of another configuration is on its way, so all changes are followed at once. */

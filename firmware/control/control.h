@@ -45,4 +45,7 @@ void control_line_changed(void);
  */
 bool control_follow(uint32_t now_us);
 
+/* Call each second: reports, once after a change, that R limits the user's q (filter_limited). */
+void control_second(void);
+
 #endif

@@ -10,6 +10,14 @@
 
 enum { AXES = 3 };
 
+/* The build names the filters that this image lacks, FILTERS_ELSEWHERE(X), if there are any. */
+#ifdef FILTERS_ELSEWHERE
+#define AFTER_SPACE(filter) " " #filter
+#define OTHER_IMAGES "; make flash FILTERS=NAME:" FILTERS_ELSEWHERE(AFTER_SPACE)
+#else
+#define OTHER_IMAGES ""
+#endif
+
 static uint8_t numbers(const setting_t *s)
 {
     return s->format.kind == VECTOR ? AXES : 1;
@@ -266,7 +274,7 @@ void setting_write_legal(uint8_t which)
             write_value(&s, setting_choice(&s, i));
         }
         if (which == SETTING_FILTER) {
-            text_words(FLASH_TEXT("; make flash FILTERS=NAME"));
+            text_words(FLASH_TEXT(OTHER_IMAGES));
         }
     }
 }

@@ -1,6 +1,9 @@
-"""The words of every fault line, whole, from every image, with the sensor at either address; part of system_tests.py."""
+"""Words of the console from every image: each fault line whole, with the sensor at either address, and the filters of the other images; part of
+system_tests.py."""
 import re
 
+from images import filters_of
+from laws import PLAIN, names
 from system_support import OUT, SET_IMAGES, STREAMS, simrun, test
 
 REST = STREAMS / "rest-2lsb.csv"
@@ -95,3 +98,25 @@ def fault_2_names_the_device_that_was_found_whenever_its_line_comes():
     for image in SET_IMAGES:
         for address, options in ADDRESSES:
             check_phases(image, address, options)
+
+
+@test
+def an_image_names_the_filters_of_the_others():
+    for image in SET_IMAGES:
+        own = filters_of(image)
+        _, notes, _, _ = simrun("elsewhere", REST, "--cmd", "300:filter median", "--max-ms", 500, fw=image)
+        said = next(note for note in notes if note.startswith("# refused"))
+        found = re.fullmatch(r"# refused 4: filter is one of ([a-z0-9_ ]+); make flash FILTERS=NAME: ([a-z0-9_ ]+)", said)
+        assert found and found[1].split() == own and sorted(own + found[2].split()) == sorted(names()), (image, said)
+
+
+@test
+def a_limited_q_is_reported_once_and_a_saved_one_too():
+    """q 10^9 at 100 Hz is 1000 LSB^2 per sample, beyond 14 R; at 800 Hz it is 2 LSB^2."""
+    for image in (image for image in SET_IMAGES if PLAIN in filters_of(image)):
+        eeprom = OUT / "limited.bin"
+        eeprom.unlink(missing_ok=True)
+        for commands, reported in ((("baud 500000", f"filter {PLAIN}", "q 1000000000", "save"), 1), ((), 1), (("rate 800", "save"), 0), ((), 0)):
+            typed = [word for i, line in enumerate(commands) for word in ("--cmd", f"{300 + 100 * i}:{line}")]
+            _, notes, _, _ = simrun("limited", REST, "--loop", "--eeprom", eeprom, *typed, "--max-ms", 4000, fw=image)
+            assert notes.count("# q is limited by r") == reported, (image, commands, notes)
