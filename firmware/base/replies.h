@@ -56,7 +56,7 @@
     REPLY(FAULT_BEGIN, "fault " V_SUBJECT ": " V_FAULT_WORDS) \
     REPLY(FAULT_END, "fault " V_SUBJECT " over: after " V_OUTAGE_MS " ms, " V_OUTAGE_LOST \
       " lost, sensor at 0x" V_OUTAGE_ADDRESS) \
-    REPLY(LIMITED, "q is limited by r")
+    REPLY(LIMITED, "limited: q by r")
 /* clang-format on */
 
 #endif

@@ -159,11 +159,16 @@ bool control_follow(uint32_t now_us)
 /* Estimates of R move the limit: it is reported once, not each time. */
 void control_second(void)
 {
+    if (control.limit_told || !pipeline_changed()) {
+        return;
+    }
+    bool limited = false;
     const tilt_axis_t *axis = pipeline_axes();
     for (uint8_t left = 3; left != 0; left--, axis++) {
-        if (filter_limited(&axis->filter) && !control.limit_told) {
-            control.limit_told = notices_add(NOTICE_LIMITED, 0);
-        }
+        limited |= filter_limited(&axis->filter);
+    }
+    if (limited) {
+        control.limit_told = notices_add(NOTICE_LIMITED, 0);
     }
 }
 

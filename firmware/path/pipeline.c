@@ -82,9 +82,9 @@ void pipeline_coast(uint32_t t_us)
     pipeline.work = WORK_COAST;
 }
 
-uint16_t pipeline_rate_dhz(void)
+bool pipeline_changed(void)
 {
-    return pipeline.true_dhz;
+    return pipeline.to_begin == 0;
 }
 
 const tilt_axis_t *pipeline_axes(void)

@@ -94,8 +94,8 @@ void pipeline_sample(const adxl345_sample_t *sample);
  */
 void pipeline_coast(uint32_t t_us);
 
-/* The output data rate that the filters have, or get with the next samples, 0.1 Hz. */
-uint16_t pipeline_rate_dhz(void);
+/* No change is left to be done: all axes have the filters of the last one. */
+bool pipeline_changed(void);
 
 /* The three axes, for reading. */
 const tilt_axis_t *pipeline_axes(void);

@@ -2,8 +2,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/counters.h"
-#include "base/notices.h"
 #include "base/number.h"
 #include "filter_list.h"
 #include "path/pipeline.h"
@@ -94,54 +92,6 @@ TEST(test_parameters_reach_the_filter)
     TEST_ASSERT_TRUE(rough[3] < rough[2] / 4.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.3 * rough[0], rough[0], rough[5]); /* as shipped again, and the calibration as it was */
     TEST_ASSERT_EQUAL_INT(5 * 16, settings()->calibration.offset_lsb_q4[0]);
-}
-
-static size_t limits_reported(const char *typed, double ms)
-{
-    return board_notes_with("# q is limited by r", talk_typed(typed, ms));
-}
-
-/* q 10^9 at 100 Hz is a process noise of 1000 LSB^2 per sample; the limit is 14 R. */
-TEST(test_a_limited_q_is_reported_once_for_each_change)
-{
-    talk_start();
-    TEST_ASSERT_EQUAL_size_t(0, limits_reported("filter {plain}", 3000));
-    TEST_ASSERT_EQUAL_size_t(1, limits_reported("q 1000000000", 5000));
-    TEST_ASSERT_EQUAL_size_t(1, limits_reported("r 65", 3000));
-    TEST_ASSERT_EQUAL_size_t(0, limits_reported("r 80", 3000));
-    TEST_ASSERT_EQUAL_size_t(1, limits_reported("r 1", 3000));
-    TEST_ASSERT_EQUAL_size_t(0, limits_reported("save", 3000));
-    size_t before = board.note_count;
-    talk_power_cycle(false);
-    board_run_ms(5000);
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# q is limited by r", before));
-    TEST_ASSERT_EQUAL_size_t(0, limits_reported("filter {default}", 3000));
-}
-
-/* The line stands still over the end of a second, with as many replies waiting as there is room for. */
-TEST(test_a_limit_for_which_there_is_no_room_is_reported_later)
-{
-    talk_start();
-    talk_type("filter {plain}");
-    uint32_t second = counted(COUNT_SECONDS);
-    while (counted(COUNT_SECONDS) == second) {
-        board_run_ms(1);
-    }
-    board_run_ms(850);
-    hal_host_faults()->tx_stuck = true;
-    size_t before = board.note_count;
-    board_type("q 1000000000");
-    for (int i = 0; i < 12; i++) {
-        board_type("odr");
-    }
-    board_run_ms(170);
-    TEST_ASSERT_EQUAL_UINT32(second + 2, counted(COUNT_SECONDS));
-    TEST_ASSERT_FALSE(notices_room());
-    hal_host_faults()->tx_stuck = false;
-    board_run_ms(500);
-    TEST_ASSERT_EQUAL_size_t(0, board_notes_with("# q is limited by r", before));
-    board_run_ms(1000);
-    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# q is limited by r", before));
 }
 
 /* No parameter of one filter is taken for one of another while the pipeline changes. */

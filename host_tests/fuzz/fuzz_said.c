@@ -88,7 +88,7 @@ bool said_line(said_t *s, const char *line)
 void said_reply(said_t *s, const char *line)
 {
     FUZZ_CHECK(s->count < REPLIES_MAX, "more replies than this target holds");
-    if (strncmp(line, "# fault ", 8) != 0 && strcmp(line, "# q is limited by r") != 0) {
+    if (strncmp(line, "# fault ", 8) != 0 && strcmp(line, "# limited: q by r") != 0) {
         snprintf(s->reply[s->count++], REPLY_TEXT, "%.79s", line);
     }
 }

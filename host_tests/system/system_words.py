@@ -1,5 +1,6 @@
 """Words of the console from every image: each fault line whole, with the sensor at either address, and the filters of the other images; part of
 system_tests.py."""
+import pathlib
 import re
 
 from images import filters_of
@@ -7,6 +8,7 @@ from laws import PLAIN, names
 from system_support import OUT, SET_IMAGES, STREAMS, simrun, test
 
 REST = STREAMS / "rest-2lsb.csv"
+LINE_MAX = int(re.search(r"#define TEXT_LINE_MAX (\d+)u", pathlib.Path("firmware/base/text.h").read_text(encoding="utf-8"))[1])
 ADDRESSES = (("0x53", ()), ("0x1D", ("--alt-address",)))
 
 # docs/faults.md; what raises it, one after the other
@@ -108,6 +110,7 @@ def an_image_names_the_filters_of_the_others():
         said = next(note for note in notes if note.startswith("# refused"))
         found = re.fullmatch(r"# refused 4: filter is one of ([a-z0-9_ ]+); make flash FILTERS=NAME: ([a-z0-9_ ]+)", said)
         assert found and found[1].split() == own and sorted(own + found[2].split()) == sorted(names()), (image, said)
+        assert len(said) < LINE_MAX, (image, len(said))
 
 
 @test
@@ -119,4 +122,4 @@ def a_limited_q_is_reported_once_and_a_saved_one_too():
         for commands, reported in ((("baud 500000", f"filter {PLAIN}", "q 1000000000", "save"), 1), ((), 1), (("rate 800", "save"), 0), ((), 0)):
             typed = [word for i, line in enumerate(commands) for word in ("--cmd", f"{300 + 100 * i}:{line}")]
             _, notes, _, _ = simrun("limited", REST, "--loop", "--eeprom", eeprom, *typed, "--max-ms", 4000, fw=image)
-            assert notes.count("# q is limited by r") == reported, (image, commands, notes)
+            assert notes.count("# limited: q by r") == reported, (image, commands, notes)

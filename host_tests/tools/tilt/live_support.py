@@ -60,7 +60,7 @@ class Talk:
     def reply(self, command):
         name, _, value = command.partition(" ")
         if name == "filter" and value and value not in FILTERS:
-            return f"# refused 4: filter is one of {' '.join(FILTERS)}; make flash FILTERS=NAME\n".encode("ascii")
+            return f"# refused 4: filter is one of {' '.join(FILTERS)}; make flash FILTERS=NAME: elsewhere\n".encode("ascii")
         if name == "filter":
             self.filter = value or self.filter
             return f"# filter {self.filter}\n".encode("ascii")

@@ -12,7 +12,7 @@ import test_record  # noqa: E402
 from fake_board import BANNER, HEADER, rows  # noqa: E402
 from tilt import protocol  # noqa: E402
 
-REFUSAL = "refused 4: filter is one of one two; make flash FILTERS=NAME"
+REFUSAL = "refused 4: filter is one of one two; make flash FILTERS=NAME: three"
 
 
 class Commands(test_record.Case):
