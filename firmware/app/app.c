@@ -226,7 +226,6 @@ static bool work_piece(void)
         if (notices_empty()) {
             loop.greeted = true;
             rows_enable(true);
-            sensor_watch_start(hal_time_us());
             coast_wait(hal_time_us());
             go_on();
         }

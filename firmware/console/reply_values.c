@@ -12,6 +12,7 @@
 #include "console/reply_texts.h"
 #include "control/calibrate.h"
 #include "control/sensor_watch.h"
+#include "hal_time.h"
 #include "hal_uart.h"
 #include "hal_watchdog.h"
 #include "machine.h"
@@ -145,7 +146,7 @@ static uint8_t text_chosen(said_t *said, uint8_t what)
         said->subject = SETTING_EVERY;
         return TEXT_SETTING;
     case SAY_SENSOR:
-        said->subject = (uint8_t)adxl345_fault();
+        said->subject = sensor_watch_start(hal_time_us());
         return said->subject == ADXL345_FAULT_NONE ? TEXT_SENSOR : TEXT_FAULT_BEGIN;
     case SAY_FAULT_WORDS:
         return (uint8_t)(TEXT_NO_SENSOR - ADXL345_FAULT_NO_SENSOR + said->subject);

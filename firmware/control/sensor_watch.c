@@ -127,13 +127,14 @@ static MACHINE_APART uint16_t newest_bit(void)
     return (uint16_t)(1u << watch.newest);
 }
 
-void sensor_watch_start(uint32_t now_us)
+uint8_t sensor_watch_start(uint32_t now_us)
 {
     forget();
     watch.part.shown = false;
     watch.slowed.shown = false;
     note(&watch, (uint8_t)adxl345_fault(), now_us);
     watch.reported_mask = newest_bit();
+    return watch.newest;
 }
 
 /* What is lost meanwhile is that of another fault. True: `reported` is in use. */

@@ -12,8 +12,8 @@
  */
 enum { FAULT_OTHER_PART = ADXL345_FAULT_INT1_FLICKERS + 1, FAULT_I2C_SLOWED };
 
-/* Call when rows start; a fault present by then was reported by the banner. */
-void sensor_watch_start(uint32_t now_us);
+/* Call once, before the passes, when the banner reports the sensor: returns the fault for it to report, or none. */
+uint8_t sensor_watch_start(uint32_t now_us);
 
 /* Call every few ms, in passes that poll the driver. */
 void sensor_watch_pass(uint32_t now_us);

@@ -75,6 +75,22 @@ def words_of_each_fault_are_whole_in_each_image_with_the_sensor_at_either_addres
             check_words(image, address, options)
 
 
+@test
+def a_fault_around_the_end_of_the_banner_has_both_its_lines():
+    """At 9600 baud the banner takes a quarter of a second, from the line with the fault to the rows 40 ms."""
+    eeprom = OUT / "slow.bin"
+    eeprom.unlink(missing_ok=True)
+    simrun("banner", REST, "--eeprom", eeprom, "--cmd", "200:baud 9600", "--cmd", "300:save", "--max-ms", 900)
+    reported = 0
+    for fault in [f"0ms:unplug:{ms}" for ms in range(100, 400, 6)] + [f"{ms}ms:unplug:60" for ms in range(100, 400, 6)]:
+        _, notes, _, _ = simrun("banner", REST, "--loop", "--eeprom", eeprom, "--fault", fault, "--max-ms", 1500)
+        lines = [note.split(":")[0] for note in notes if note.startswith("# fault")]
+        begun, over = ([line for line in lines if line.endswith(" over") == ends] for ends in (False, True))
+        assert over == [f"{line} over" for line in begun], (fault, lines)
+        reported += len(begun)
+    assert reported > 90, reported
+
+
 # Of a device that is none, at the start: the MCU is reset again and again, and a `status` typed so many ms later.
 PHASES, STEP_MS, EVERY_MS = 50, 1.2, 90
 
