@@ -232,7 +232,7 @@ TEST(test_samples_of_a_sensor_that_went_are_not_clipped_by_the_next_range)
     }
     size_t first = board.row_count;
     adxl345_model_power(hal_host_sensor(), false);
-    (void)talk_typed("range 2", 100);
+    (void)talk_typed("range 2", 60);
     TEST_ASSERT_EQUAL(ADXL345_FAULT_NO_SENSOR, adxl345_fault());
     TEST_ASSERT_EQUAL_UINT8(4, adxl345_queued());
     board_run_ms(4000);
