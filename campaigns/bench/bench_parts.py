@@ -46,7 +46,7 @@ PARTS = {
     "sleep": "hal_sleep_until_wake",
     "time and alarm": "hal_time_* hal_wake_at set_alarm",
     "missing samples": "coast_* expect",
-    "supervision": "service health_* sensor_watch_second",
+    "supervision": "service health_* sensor_watch_second control_second",
     "commands and replies": "commands_pass takes_commands speaker_pass measure_pass measure_sample",
 }
 OWN = {

@@ -300,7 +300,7 @@ void proof_filter_limited(void)
     filter_t f;
     any_law(0);
     any_filter(&f, FILTER_RUNNING, 1024);
-    f.limited = ANY_BOOL();
+    f.q_limited = ANY_BOOL();
     (void)filter_limited(&f);
 }
 

@@ -35,7 +35,7 @@ void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8)
 
 bool filter_limited(const filter_t *f)
 {
-    return f->limited;
+    return f->q_limited;
 }
 
 uint32_t filter_own_noise_lsb2_q8(const filter_t *f)

@@ -176,7 +176,7 @@ typedef struct {
     bool negative;        /* sign of the innovation */
     bool identifies;      /* the law identifies its noise itself: filter_own_noise_lsb2_q8 */
     bool broken;          /* a sample was missing since the run of refused ones began, see kalman.h */
-    bool limited;         /* filter_limited */
+    bool q_limited;       /* filter_limited */
     uint8_t quarters;     /* multiples of 25 ms without a sample, up to FILTER_HOLD_MS */
     union {
         filter_start_t start;

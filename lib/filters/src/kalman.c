@@ -24,21 +24,6 @@ uint32_t filter_kalman_per_r(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint8_t fract
     return (quotient > max) ? max : quotient;
 }
 
-uint32_t filter_kalman_drive_per_r(filter_t *f, fx_scaled_t drive_lsb2, fx_scaled_t r_lsb2, uint8_t fraction_bits,
-                                   uint32_t min, uint32_t max)
-{
-    uint32_t q = filter_fx_scaled_fixed(filter_fx_scaled_div(drive_lsb2, r_lsb2), fraction_bits);
-    f->limited = true;
-    if (q < min) {
-        return min;
-    }
-    if (q > max) {
-        return max;
-    }
-    f->limited = false;
-    return q;
-}
-
 fx_scaled_t filter_kalman_scaled_r(uint32_t r_lsb2_q8)
 {
     fx_scaled_t r_lsb2 = filter_fx_scaled(r_lsb2_q8);
@@ -54,13 +39,19 @@ void filter_kalman_set_up(filter_t *f, const filter_config_t *config, uint32_t r
     filter_set_noise(f, (uint32_t)config->value[KALMAN_R]);
 }
 
+static uint32_t per_r_uq26(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint32_t min_uq26)
+{
+    return filter_kalman_per_r(lsb2, r_lsb2, 26, min_uq26, KALMAN_Q22_MAX_UQ26);
+}
+
 void filter_kalman_set_variance(filter_t *f, uint32_t r_lsb2_q8)
 {
     filter_kalman_t *k = &f->own.kalman;
     fx_scaled_t r_lsb2 = filter_kalman_scaled_r(r_lsb2_q8);
     k->r_lsb2_q8 = r_lsb2_q8;
-    k->q22_uq26 = filter_kalman_drive_per_r(f, k->drive_lsb2, r_lsb2, 26, KALMAN_Q22_MIN_UQ26, KALMAN_Q22_MAX_UQ26);
-    k->p22_start_uq26 = filter_kalman_per_r(k->start_lsb2, r_lsb2, 26, k->q22_uq26, KALMAN_Q22_MAX_UQ26);
+    k->q22_uq26 = per_r_uq26(k->drive_lsb2, r_lsb2, KALMAN_Q22_MIN_UQ26);
+    f->q_limited = k->q22_uq26 == KALMAN_Q22_MIN_UQ26 || k->q22_uq26 == KALMAN_Q22_MAX_UQ26;
+    k->p22_start_uq26 = per_r_uq26(k->start_lsb2, r_lsb2, k->q22_uq26);
 }
 
 /*

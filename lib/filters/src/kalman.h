@@ -89,10 +89,6 @@ void filter_kalman_scales(const filter_config_t *config, fx_scaled_t *drive_lsb2
 /* A variance over R with the given fraction bits, limited to min..max. Divides. */
 uint32_t filter_kalman_per_r(fx_scaled_t lsb2, fx_scaled_t r_lsb2, uint8_t fraction_bits, uint32_t min, uint32_t max);
 
-/* The same for the process noise q T^3; filter_limited says whether that was limited. */
-uint32_t filter_kalman_drive_per_r(filter_t *f, fx_scaled_t drive_lsb2, fx_scaled_t r_lsb2, uint8_t fraction_bits,
-                                   uint32_t min, uint32_t max);
-
 /* r_lsb2_q8 as a scaled number, LSB^2. */
 fx_scaled_t filter_kalman_scaled_r(uint32_t r_lsb2_q8);
 

@@ -72,7 +72,8 @@ static void set_noise(filter_t *f, uint32_t r_lsb2_q8)
     k->r_lsb2_q8 = r_lsb2_q8;
     fx_scaled_t r_lsb2 = filter_kalman_scaled_r(r_lsb2_q8);
     uint32_t most = k->fine ? Q33_MAX_FINE_UQ28 : ONE_UQ28;
-    k->q33_uq28 = filter_kalman_drive_per_r(f, k->drive_lsb2, r_lsb2, 28, Q33_MIN_UQ28, most);
+    k->q33_uq28 = filter_kalman_per_r(k->drive_lsb2, r_lsb2, 28, Q33_MIN_UQ28, most);
+    f->q_limited = k->q33_uq28 == Q33_MIN_UQ28 || k->q33_uq28 == most;
     k->p22_start_uq28 = filter_kalman_per_r(k->start_lsb2, r_lsb2, 28, k->q33_uq28, P22_START_MAX_UQ28);
 }
 

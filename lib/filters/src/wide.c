@@ -19,7 +19,8 @@ void filter_wide_set_noise(filter_t *f, uint32_t r_lsb2_q8)
     fx_scaled_t r_lsb2 = filter_kalman_scaled_r(r_lsb2_q8);
     w->r_lsb2_q8 = r_lsb2_q8;
     w->per_r = filter_fx_scaled_div(filter_fx_scaled(1), r_lsb2);
-    w->q22_uq28 = filter_kalman_drive_per_r(f, w->drive_lsb2, r_lsb2, 28, WIDE_Q22_MIN_UQ28, WIDE_Q22_MAX_UQ28);
+    w->q22_uq28 = filter_kalman_per_r(w->drive_lsb2, r_lsb2, 28, WIDE_Q22_MIN_UQ28, WIDE_Q22_MAX_UQ28);
+    f->q_limited = w->q22_uq28 == WIDE_Q22_MIN_UQ28 || w->q22_uq28 == WIDE_Q22_MAX_UQ28;
     w->p22_start_uq28 = filter_kalman_per_r(w->start_lsb2, r_lsb2, 28, w->q22_uq28, WIDE_Q22_MAX_UQ28);
 }
 
