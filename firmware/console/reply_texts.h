@@ -110,7 +110,7 @@ enum say {
     SAY_FAULT_WORDS,
     SAY_SETTING_NOTE, /* printed after a setting's value */
     SAY_EVERY,        /* the setting `every`, after another setting */
-    SAY_SENSOR,       /* at the start of a line: the sensor's address or its fault; waits until it is known */
+    SAY_SENSOR,       /* at the start of a line, once: sensor's address or fault; waits for it, starts the watch */
     SAY_LISTED,       /* from here to KEEP: the text of the same name */
     SAY_HEADER,       /* at the start of a line, without "# " */
     SAY_BUS,

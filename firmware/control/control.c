@@ -159,7 +159,7 @@ bool control_follow(uint32_t now_us)
 /* Estimates of R move the limit: it is reported once, not each time. */
 void control_second(void)
 {
-    if (control.limit_told || !pipeline_changed()) {
+    if (control.limit_told || !pipeline_changed() || settings()->mode == MODE_PLOT) {
         return;
     }
     bool limited = false;

@@ -45,7 +45,10 @@ void control_line_changed(void);
  */
 bool control_follow(uint32_t now_us);
 
-/* Call each second: reports, once after a change has been applied, that R limits q on an axis (filter_limited). */
+/*
+ * Call each second: reports, once after a change has been applied, that R limits q on an axis (filter_limited); not
+ * among the plotter's rows.
+ */
 void control_second(void);
 
 #endif

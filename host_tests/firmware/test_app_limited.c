@@ -44,6 +44,30 @@ TEST(test_a_limit_of_the_filter_before_the_change_is_not_reported)
     }
 }
 
+/* The plotter takes no line that is not asked for: it comes when csv rows come. */
+TEST(test_a_limit_is_not_reported_to_the_plotter)
+{
+    talk_start();
+    talk_type("mode plot");
+    talk_type("filter {plain}");
+    TEST_ASSERT_EQUAL_size_t(0, limits_reported("q 1000000000", 3000));
+    TEST_ASSERT_EQUAL_size_t(1, limits_reported("mode csv", 3000));
+}
+
+/* A change reaches the filters when samples come again. */
+TEST(test_a_limit_is_reported_when_the_sensor_is_back)
+{
+    talk_start();
+    talk_type("filter {plain}");
+    adxl345_model_power(hal_host_sensor(), false);
+    board_run_ms(500);
+    TEST_ASSERT_EQUAL_size_t(0, limits_reported("q 1000000000", 3000));
+    size_t before = board.note_count;
+    adxl345_model_power(hal_host_sensor(), true);
+    board_run_ms(3000);
+    TEST_ASSERT_EQUAL_size_t(1, board_notes_with("# limited: q by r", before));
+}
+
 /* At 12.5 Hz the three axes follow a change within 240 ms: at every moment of a second. */
 TEST(test_a_change_at_any_moment_reports_only_its_own_limit)
 {
