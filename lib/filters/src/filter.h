@@ -181,7 +181,7 @@ filter_answer_t filter_init(filter_t *f, const filter_law_t *law, const filter_c
 void filter_set_noise(filter_t *f, uint32_t r_lsb2_q8);
 
 /*
- * Process noise over the R in force is at a limit of what the law's numbers hold, and a q beyond does not apply. Changes
+ * Process noise over the R in force is at a limit of what the law's numbers hold: a q beyond it does not apply. Changes
  * with R. Always false for a law without q.
  */
 bool filter_limited(const filter_t *f);
