@@ -88,10 +88,11 @@ def note_call(function, instruction, line):
 
 
 def descriptors(every):
-    """{slot: set of keys}: the functions in the descriptors of the laws of lib/filters, which end with their pointers."""
+    """{slot: set of keys}: the functions in the descriptors of the laws of lib/filters, which end with their pointers and the name."""
     header = pathlib.Path("lib/filters/src/tracker.h").read_text(encoding="utf-8")
     slots = re.findall(r"\(\*(\w+)\)\(", header.partition("struct filter_law {")[2].partition("\n};")[0])
-    ends = {s.name: s.size for s in symbols() if s.name.startswith("filter_law_") and s.section != "*UND*"}
+    ends = {s.name: s.size - len(f"{s.name.removeprefix('filter_law_')}\0") for s in symbols()
+            if s.name.startswith("filter_law_") and s.section != "*UND*"}
     found, law = {slot: set() for slot in slots}, None
     for path in objects():
         for line in run("avr-objdump", "-r", path).splitlines():
