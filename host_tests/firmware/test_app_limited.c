@@ -81,7 +81,7 @@ TEST(test_a_change_at_any_moment_reports_only_its_own_limit)
     }
 }
 
-/* Noise of 20 LSB on two axes, of 0.3 LSB on the third: a q of 14 R there is far below 14 R on the others. */
+/* Process noise of 100 LSB^2 a sample: more than 14 R on the axis that moves by 1 LSB, below R at a noise of 20 LSB. */
 TEST(test_a_limit_on_any_axis_is_reported)
 {
     for (size_t quiet = 0; quiet < 3; quiet++) {

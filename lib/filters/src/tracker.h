@@ -28,7 +28,7 @@ enum filter_trait {
 /* What a step gets: no sample, prediction only; a sample; a sample only for the covariance to settle (filter_reset). */
 enum filter_step_kind { STEP_MISSING, STEP_SAMPLE, STEP_SETTLE };
 
-/* Without a size, as GNU C allows, it takes 44 bytes less of an image; Frama-C cannot initialise that. */
+/* A name without a size, as GNU C allows, saves 44 bytes of the firmware's image; Frama-C cannot initialise one. */
 #ifndef __FRAMAC__
 #define LAW_NAME_SIZE
 #else
