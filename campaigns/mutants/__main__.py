@@ -145,7 +145,7 @@ class Campaign:
         hosts = [Host(settings, variant, copy_tree("clean")) for variant in ("ubsan", "asan")]
         say(f"building {len(settings.product)} sources of the PC's programs")
         hosts[0].compile(pool)
-        self.order = Listed(settings.tests) if self.options.sample else Reached(
+        self.order = Listed(settings.tests, hosts[0].test_source) if self.options.sample else Reached(
             hosts[0], self.mutants, self.texts, self.options.patience, pool, say)
         self.judge, self.chip = Judge(hosts, self.order.tests, self.order.limits), Chip(hosts[0].tree)
         self.cheapest, link = Cheapest(self.options.patience), Link(settings, hosts[0].tree)

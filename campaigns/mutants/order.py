@@ -2,6 +2,7 @@
 import pathlib
 from collections import Counter
 
+import test_parts
 from operators import mutants_of
 from reach import Reach
 
@@ -76,15 +77,17 @@ class Cheapest:
 
 
 class Listed:
-    """Without a measurement: those that noticed most in the file's last whole campaign, then all others."""
+    """Without a measurement: those that noticed most in the file's last whole campaign, then all others that are linked with the file."""
 
-    def __init__(self, tests):
-        self.all, self.limits = tests, {}
+    def __init__(self, tests, source_of):
+        self.all, self.limits, known = tests, {}, test_parts.headers()
+        self.linked = {test: {str(path) for path in test_parts.of(source_of(test), known).seen} for test in tests}
         self.first = {file: [name for name in names if name in tests] for file, names in listed().items()}
 
     def tests(self, mutant, _host):
         first = self.first.get(mutant.file, [])
-        rest = [test for test in self.all if test not in first]
+        linked = [test for test in self.all if mutant.file in self.linked[test]] or self.all
+        rest = [test for test in linked if test not in first]
         return first + sorted(rest, key=lambda test: test.endswith("_reference"))  # these need Eigen's minute of compiling
 
     def learn(self, mutant, by):

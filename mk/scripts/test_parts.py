@@ -84,14 +84,20 @@ class Parts:
                     self.objects.add(str(source.with_suffix(".o")))
 
 
+def of(test, known):
+    """The parts of a test, by its source."""
+    parts = Parts(known)
+    parts.follow(pathlib.Path(test))
+    return parts
+
+
 def main():
     build = sys.argv[1]
     known = headers()
     for test in sorted([*pathlib.Path("host_tests").glob("*/test_*.c"), *pathlib.Path("nav/tests").glob("test_*.c")], key=lambda path: path.name):
         if test.stem in OWN_RULE:
             continue
-        parts = Parts(known)
-        parts.follow(test)
+        parts = of(test, known)
         words = sorted(f"{build}/{name}" for name in parts.objects) + [f"{build}/lib{name}.a" for name in sorted(parts.archives)]
         print(f"{build}/{test.stem}: {' '.join(words)}")
 

@@ -8,6 +8,7 @@ CAMPAIGN = pathlib.Path("campaigns/mutants/__main__.py")
 sys.path[:0] = [*pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split(), str(CAMPAIGN.parent)]
 import page_mutants  # noqa: E402
 from operators import mutants_of  # noqa: E402
+from order import Listed  # noqa: E402
 from system_support import OUT, refused, run_all, test  # noqa: E402
 
 
@@ -74,6 +75,18 @@ def only_a_campaign_over_all_by_all_tests_has_a_page():
     campaign = campaign_module()
     for words, page in (([], True), (["--seconds=9"], True), (["--only=lib"], False), (["--sample=9"], False), (["--patience=9"], False)):
         assert campaign.has_page(campaign.options_of(words)) == page, words
+
+
+@test
+def a_sample_asks_the_tests_that_are_linked_with_the_file_and_first_those_that_noticed_most():
+    places = {"test_driver": "host_tests/adxl345/test_driver.c", "test_sprf": "host_tests/filters/test_sprf.c",
+              "test_app": "host_tests/firmware/test_app.c"}
+    listed = Listed(list(places), places.get)
+    driver, header = "lib/adxl345/src/adxl345_driver.c", "lib/adxl345/src/i2c_bus.h"
+    listed.first = {driver: ["test_sprf"]}
+    asked = [listed.tests(types.SimpleNamespace(file=file), None) for file in (driver, header)]
+    assert asked == [["test_sprf", "test_driver", "test_app"], ["test_driver", "test_app"]], asked
+    assert listed.tests(types.SimpleNamespace(file="unknown.h"), None) == list(places)
 
 
 if __name__ == "__main__":
