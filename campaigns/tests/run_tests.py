@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """run_tests.py [quick]: runs all tests of test_table.py, or the unit tests of the PC, two at a time, those that took longest the last time
-first. Prints each as it ends, with what failed or was skipped and why; at the end where the time went, all that failed once more, and the
-sum. The log of each is build/host/NAME.log, the times of the last run build/host/times.json.
+first; beside them, one at a time, those that mostly wait for a browser or a port. Prints each as it ends, with what failed or was skipped and
+why; at the end where the time went, all that failed once more, and the sum. The log of each is build/host/NAME.log, the times of the last run
+build/host/times.json.
 """
 import concurrent.futures
 import json
@@ -34,6 +35,8 @@ LONG_S = {"bitexact": 75, "system_tests": 48, "test_papers": 33, "test_nav_image
           "test_compile_commands": 17, "test_design_refusals": 16, "test_papers_synthesis": 15,
           "test_recording_faults": 15, "tilt_replay": 15, "test_adaptive_reference": 11, "test_recordings": 10,
           "tilt_board_played": 30}
+# they wait for most of their time, so they take no turn from those that compute
+WAITING = {"test_demo", "test_demo_page", "test_flash", "tilt_board_played", "tilt_live_page", "tilt_start"}
 
 
 @dataclass
@@ -70,11 +73,13 @@ class Running:
     """What runs now, to be shown, and to be ended with this program."""
 
     def __init__(self):
-        self.lock, self.programs, self.begun = threading.Lock(), {}, {}
+        self.lock, self.programs, self.begun, self.ended = threading.Lock(), {}, {}, False
 
     def add(self, name, program):
         with self.lock:
             self.programs[name], self.begun[name] = program, time.monotonic()
+            if self.ended:  # begun while the others were ended
+                os.killpg(program.pid, signal.SIGTERM)
 
     def remove(self, name):
         with self.lock:
@@ -85,8 +90,9 @@ class Running:
             return ", ".join(f"{name} ({time.monotonic() - begun:.0f} s)" for name, begun in self.begun.items())
 
     def end(self):
-        """Each with the programs that it has started."""
+        """Each with the programs that it has started, and what is begun later."""
         with self.lock:
+            self.ended = True
             for program in self.programs.values():
                 os.killpg(program.pid, signal.SIGTERM)
 
@@ -213,8 +219,9 @@ def shared(runs):
 
 
 def carried_out(runs, order, report):
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        jobs = {pool.submit(run, name, runs[name]): name for name in order}
+    with concurrent.futures.ThreadPoolExecutor(2) as computing, concurrent.futures.ThreadPoolExecutor(1) as waiting_ones:
+        pools = {name: waiting_ones if name in WAITING else computing for name in order}
+        jobs = {pools[name].submit(run, name, runs[name]): name for name in order}
         waiting = set(jobs)
         try:
             while waiting:
@@ -223,7 +230,8 @@ def carried_out(runs, order, report):
                     report.add(jobs[job], job.result())
                 report.still(RUNNING.words())
         except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
+            for pool in (computing, waiting_ones):
+                pool.shutdown(wait=False, cancel_futures=True)
             RUNNING.end()
             raise
 
@@ -241,7 +249,7 @@ def main():
     runs = shared(chosen(sys.argv[1:]))
     times = times_of_last_run()
     order = longest_first(runs, times)
-    print(f"run_tests: {len(order)} test programs, two at a time", flush=True)
+    print(f"run_tests: {len(order)} test programs, two at a time and one that waits", flush=True)
     report = Report(len(order))
     try:
         carried_out(runs, order, report)

@@ -128,6 +128,31 @@ def what_took_longest_the_last_time_is_begun_first():
         assert run_tests.times_of_last_run() == times
 
 
+@test
+def programs_that_wait_take_no_turn_of_those_that_compute():
+    with tempfile.TemporaryDirectory() as folder, mock.patch.object(run_tests, "OUT", pathlib.Path(folder)), \
+            contextlib.redirect_stdout(io.StringIO()):
+        wait = f"for i in $(seq 600); do [ -e {folder}/here ] && echo '1 Tests 0 Failures 0 Ignored' && exit 0; sleep 0.1; done; exit 1"
+        runs = {"one": ["sh", "-c", wait], "other": ["sh", "-c", wait],
+                min(run_tests.WAITING): ["sh", "-c", f"touch {folder}/here; echo '1 Tests 0 Failures 0 Ignored'"]}
+        report = run_tests.Report(len(runs))
+        run_tests.carried_out(runs, list(runs), report)
+    assert report.total == [3, 0, 0], report.failed
+
+
+@test
+def an_interrupt_ends_all_that_runs():
+    """What has begun, what begins meanwhile in the place of what has ended, and what was to begin later."""
+    with tempfile.TemporaryDirectory() as folder, mock.patch.object(run_tests, "OUT", pathlib.Path(folder)), \
+            mock.patch.object(run_tests, "RUNNING", run_tests.Running()):
+        report = mock.Mock(**{"add.side_effect": KeyboardInterrupt})
+        runs = {"short": ["true"], "long": ["sh", "-c", "sleep 600; true"], min(run_tests.WAITING): ["sleep", "600"],
+                "next": ["sleep", "600"], "later": ["sleep", "600"]}
+        began = time.monotonic()
+        refused(KeyboardInterrupt, lambda: run_tests.carried_out(runs, list(runs), report), "")
+        assert time.monotonic() - began < 300 and not run_tests.RUNNING.programs and not (pathlib.Path(folder) / "later.log").exists()
+
+
 UNITTEST = '''
 import pathlib, sys, unittest
 sys.path[:0] = pathlib.Path("mk/pythonpath").read_text(encoding="ascii").split()
@@ -238,6 +263,7 @@ def every_test_of_the_tools_is_in_the_list():
     others = {"system_tests", "bitexact", "exhaustive_isqrt"}
     known = {name for name in run_tests.LONG_S if not name.startswith(("chip_", "tilt_"))}
     assert known | set(run_tests.SHARES) <= others | here | set(test_table.sources(".c"))
+    assert run_tests.WAITING <= set(test_table.table())
 
 
 @test
