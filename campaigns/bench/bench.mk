@@ -48,7 +48,7 @@ $(U)/bench_rest.elf: $(BENCH_REST_OBJ)
 # other people's filters, measured beside ours, if they are available
 PEERS ?= ../shared/peers/filters
 
-## bench: measure cycles, flash, RAM and stack of each filter, beside float and other people's (PEERS=folder), into docs/results/benchmarks.md (8 minutes)
+## bench: measure cycles, flash, RAM and stack of each filter, beside float and other people's (PEERS=folder), into docs/results/benchmarks.md (2 minutes)
 bench:
 	@sh tools/deps.sh bench
 	@$(MAKE) -j2 $(BENCH_IMAGES) $(U)/bench_sample.elf $(U)/bench_rest.elf $(SET_IMAGES) $(S)/simrun

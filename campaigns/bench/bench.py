@@ -243,8 +243,8 @@ def together(results):
     return sections, stack, [r for _, _, part in results for r in part]
 
 
-def collect(flags, sources, parts):
-    filters = filters_of(flags)
+def collect(filters, parts, sizes, sample):
+    """The rows of the calls; sizes and sample: futures of measure_sizes and measure_sample."""
     *results, kept = measure([OUT / f"bench{name}.elf" for name in (*(f"_{p}" for p in parts), *(f"_small_{p}" for p in parts), "_kept")])
     sections, stack, rms = together(results[:len(parts)])
     small, _, _ = together(results[len(parts):])
@@ -254,8 +254,8 @@ def collect(flags, sources, parts):
     missed = [f for f in filters if f not in rows or f not in rows_small]
     if missed:
         raise Fault(f"{missed[0]}: in no image of the benchmark (BENCH_LIST in campaigns/bench/bench.mk)")
-    alone, shared = measure_sizes(flags, sources, filters)
-    rows["sample_total"], stack["sample_total"] = measure_sample()
+    alone, shared = sizes.result()
+    rows["sample_total"], stack["sample_total"] = sample.result()
     rows_small["sample_total"] = rows["sample_total"]
     rows["noise"]["worst_small"] = rows_small["noise"]["worst"]
     for name, row in zip(("sample_rest", "row"), measure_rest(rows)):
@@ -271,7 +271,7 @@ def collect(flags, sources, parts):
             row["shared"] = shared[name]
     wanted = [*filters, "start", "angles", "format_row", "sample_total", "sample_rest", "row", "noise", *(f"{f}_set_noise" for f in filters),
               *(f"float_{f}" for f in filters), KEPT, "float_angles"]
-    return filters, {name: rows[name] for name in wanted}, rms
+    return {name: rows[name] for name in wanted}, rms
 
 
 def main():
@@ -282,22 +282,31 @@ def main():
     options.add_argument("--parts", required=True, help="the images' numbers")
     options.add_argument("--peers", required=True, type=pathlib.Path, help="the folder of other people's filters")
     arguments = options.parse_args()
-    sources = page_sources.hash_now(DOCUMENT)
-    peers, absent = bench_peers.measure(arguments.flags.split(), arguments.sources.split(), arguments.peers)
-    filters, rows, rms = collect(arguments.flags.split(), arguments.sources.split(), arguments.parts.split())
+    hash_before = page_sources.hash_now(DOCUMENT)
+    flags, sources, version = arguments.flags.split(), arguments.sources.split(), run(["avr-gcc", "-dumpversion"]).strip()
+    filters = filters_of(flags)
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        try:
+            sizes, sample = pool.submit(measure_sizes, flags, sources, filters), pool.submit(measure_sample)
+            others = pool.submit(bench_peers.measure, flags, sources, arguments.peers)
+            firmware = pool.submit(bench_parts.report) if version == COMPILER else None
+            rows, rms = collect(filters, arguments.parts.split(), sizes, sample)
+            peers, absent = others.result()
+            parts, part_faults = firmware.result() if firmware else ([], [])
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     lines = table(rows)
     print("\n".join([*lines, "", *bench_peers.table(peers), *bench_peers.said_of(absent, arguments.peers)]))
     JSON.write_text(json.dumps(bench_json(rows) + bench_peers.json_rows(peers), indent=1) + "\n", encoding="ascii")
     new = read_table("\n".join([f"## {CALLS}", *lines]))
-    faults = limit_faults(filters, rows, rms) + declared_faults(declared_of(arguments.flags.split(), filters), rows)
+    faults = limit_faults(filters, rows, rms) + declared_faults(declared_of(flags, filters), rows)
     faults += regressions(read_table(page_benchmarks.PAGE.before()), new)
-    version = run(["avr-gcc", "-dumpversion"]).strip()
     if version != COMPILER:
         print(f"bench: avr-gcc {version}: reported only, the limits and {DOCUMENT} are for {COMPILER}")
         return 0
-    parts, found = bench_parts.report()
-    faults += found
-    page_benchmarks.write(lines, parts, None if absent else bench_peers.table(peers), sources)
+    faults += part_faults
+    page_benchmarks.write(lines, parts, None if absent else bench_peers.table(peers), hash_before)
     for fault in faults:
         print(f"bench: {fault}", file=sys.stderr)
     print(f"bench: {len(rows)} rows, {len(faults)} findings; {DOCUMENT} and {JSON} written")
