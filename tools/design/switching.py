@@ -4,7 +4,7 @@ every F lies in the hull of those at the corners, and the question is whether th
 
 Bounds by Gripenberg's branch and bound: the spectral radius of any product of m corners, to the power 1/m, is a lower bound; if every sequence
 of corners begins with a product whose norm is at most r^m, r is an upper bound. The norm is an ellipsoidal one fitted to the corners. The proof
-is the tree of those products: `proves` walks it again, given only the corners, the norm and the bound."""
+is the tree of those products, which the tests walk again, given only the corners, the norm and the bound."""
 import itertools
 from dataclasses import dataclass
 
@@ -172,22 +172,3 @@ def bounds(band, products_max=PRODUCTS_MAX):
         again = searched(raw, norm, found.low, found.word, products_max)
         found = again if again.high < found.high else found
     return found
-
-
-def proves(band, found, products_max=PRODUCTS_MAX):
-    """Whether every sequence of the band's corners begins with a product of norm at most high^m: walks the tree again, word by word."""
-    corners = in_coordinates(band.corners(), found.norm)
-    if found.high < max(float(spectral_radius(f)) for f in corners):
-        return False
-    corners = corners / found.high  # so that long products neither vanish nor overflow
-    waiting, used = [np.eye(corners.shape[-1])], 0
-    while waiting:
-        product = waiting.pop()
-        for corner in corners:
-            used += 1
-            if used > products_max:
-                return False
-            longer = corner @ product
-            if np.linalg.norm(longer, 2) > 1:
-                waiting.append(longer)
-    return True
