@@ -27,7 +27,7 @@ FOLDERS_OF = {
     "host_tests": ("host",),
     "host_tests/chip": ("avr",),
     "host_tests/chip/peers": (),  # adapters to libraries that are in no folder of this repository; make bench compiles them
-    "host_tests/comparison": (),  # partly such adapters; make comparison compiles them
+    "host_tests/tools/comparison": (),  # partly such adapters; make comparison compiles them
     "host_tests/bitexact": ("host", "avr"),
     "host_tests/proof": (),  # speaks to the prover in its own built-in functions; make proof parses it
 }

@@ -9,5 +9,5 @@ cppcheck --platform=avr8 --std=c11 --enable=warning,style,performance,portabilit
     # shellcheck disable=SC2086
     cppcheck --platform=unix64 --std=c11 --enable=warning,performance,portability --error-exitcode=1 -q $includes -Ihal/host -Isim/model -Isim/judge -Ihost_tests -Inav/tests \
         hal/host sim nav/tests/*.c host_tests/adxl345 host_tests/filters host_tests/firmware host_tests/hal host_tests/sim host_tests/support \
-        host_tests/system host_tests/tilt host_tests/tools host_tests/wokwi wokwi
+        host_tests/system host_tests/tilt host_tests/tools wokwi
 echo 'cppcheck: clean'

@@ -1,5 +1,5 @@
-# Wokwi: a project with the sensor model as a custom chip. Its own API is a header of ours on the PC (host_tests/wokwi).
-$(H)/wokwi/%.o $(H)/host_tests/wokwi/%.o: HOST_FLAGS += -Ihost_tests/wokwi
+# Wokwi: a project with the sensor model as a custom chip. Its own API is a header of ours on the PC, host_tests/sim/wokwi-api.h.
+$(H)/wokwi/%.o $(H)/host_tests/sim/test_wokwi.o: HOST_FLAGS += -Ihost_tests/sim
 $(H)/test_wokwi: $(H)/wokwi/adxl345.chip.o
 
 ## wokwi: build build/wokwi, a project for the Wokwi simulator: the firmware and the sensor model as a custom chip (wokwi/README.md)

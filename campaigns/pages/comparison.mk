@@ -1,14 +1,14 @@
 # Ours beside what the literature and other people's toolboxes have, on the same samples.
 FUSION      := $(wildcard $(PEERS)/Fusion/Fusion)
 FUSION_C    := $(if $(FUSION),$(addprefix $(FUSION)/,FusionAhrs.c))
-FUSION_INC   = -I$(FUSION) -Ihost_tests -Ihost_tests/comparison
+FUSION_INC   = -I$(FUSION) -Ihost_tests -Ihost_tests/tools/comparison
 FUSION_BUILT := $(if $(FUSION),$(H)/default_filter_fusion $(B)/papers/libfusion.so)
 
 # the class table's program with one contender more: the library, where it is there
-$(H)/default_filter_fusion: host_tests/tools/campaigns/default_filter.c host_tests/comparison/fusion_pc.h host_tests/comparison/runner.h $(FUSION_C) $(ARCHIVES_O2) $(PAPER_AXES_O2)
+$(H)/default_filter_fusion: host_tests/tools/campaigns/default_filter.c host_tests/tools/comparison/fusion_pc.h host_tests/tools/comparison/runner.h $(FUSION_C) $(ARCHIVES_O2) $(PAPER_AXES_O2)
 	@$(HOST_CC) $(HOST_FLAGS) -O2 -DPEER_FUSION $(FUSION_INC) $< $(FUSION_C) $(call linked,$(ARCHIVES_O2) $(PAPER_AXES_O2)) -lm -lstdc++ -o $@
 
-$(B)/papers/libfusion.so: host_tests/comparison/fusion_traces.c host_tests/comparison/fusion_pc.h $(FUSION_C)
+$(B)/papers/libfusion.so: host_tests/tools/comparison/fusion_traces.c host_tests/tools/comparison/fusion_pc.h $(FUSION_C)
 	@mkdir -p $(@D)
 	@$(HOST_CC) -std=c11 -O2 -fPIC -shared $(FUSION_INC) $< $(FUSION_C) -lm -o $@
 

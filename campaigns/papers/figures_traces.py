@@ -1,4 +1,4 @@
-"""Paper 002 sample by sample: realisations of Table 1 and every filter in double on them, by host_tests/figures/traces.cpp."""
+"""Paper 002 sample by sample: realisations of Table 1 and every filter in double on them, by host_tests/papers/figures/traces.cpp."""
 import ctypes
 import functools
 import pathlib

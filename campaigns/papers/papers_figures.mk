@@ -3,7 +3,7 @@ TRACES := $(P)/libtraces.so
 $(TRACES): $(addprefix $(P)/host_tests/,figures/traces.o comparison/peer_traces.o support/peers.o support/robust_peers.o support/chain.o reference/robust.o reference/robust_joint.o) $(PAPERS_OBJ)
 	@$(HOST_CXX) -shared $^ -lm -o $@
 
-$(P)/flight_series: $(P)/host_tests/figures/flight_series.o $(addprefix $(P)/nav/tests/,reference_nav.o nav_flights.o) \
+$(P)/flight_series: $(P)/host_tests/papers/figures/flight_series.o $(addprefix $(P)/nav/tests/,reference_nav.o nav_flights.o) \
                     $(addprefix $(P)/host_tests/support/,flight.o random.o) $(NAV_VARIANTS:%=$(P)/nav/%.o)
 	@$(HOST_CXX) $^ -lm -o $@
 

@@ -22,11 +22,11 @@
 #include <string.h>
 
 #ifdef PEER_FUSION /* make comparison, where its library is there */
-#include "comparison/fusion_pc.h"
+#include "tools/comparison/fusion_pc.h"
 #else
-#include "comparison/fusion_none.h"
+#include "tools/comparison/fusion_none.h"
 #endif
-#include "comparison/runner.h"
+#include "tools/comparison/runner.h"
 
 /* References: truth, or smoothed at these cuts, the first of which decides; behind them the own run without faults. */
 static const double cut_hz[] = { 5.0, 2.5, 10.0 };
