@@ -9,8 +9,8 @@ from comparison_filters import FUSION, OURS, PEERS, WEIGHED
 SUPPORT = pathlib.Path("host_tests/support").resolve()
 KINDS = dict(zip(PEERS, ("PEER_EMA_ALONE", "PEER_MEDIAN3_EMA", "PEER_MEDIAN_EMA", "PEER_HAMPEL_EMA", "PEER_EURO")))
 ROBUST = dict(zip(WEIGHED, ("ROBUST_HUBER", "ROBUST_STUDENT", "ROBUST_CORRENTROPY", "ROBUST_IMM")))
-OTHER = "../comparison/peer_other.c"
-OF_FUSION = Subject(FUSION, "", "../comparison/fusion.c", ("Fusion/Fusion",), ("Fusion/Fusion/FusionAhrs.c",))
+OTHER = "../tools/comparison/peer_other.c"
+OF_FUSION = Subject(FUSION, "", "../tools/comparison/fusion.c", ("Fusion/Fusion",), ("Fusion/Fusion/FusionAhrs.c",))
 
 
 def subjects(peers):

@@ -1,6 +1,6 @@
 # The papers' figures, drawn from our runs. The name sorts this file behind papers.mk, whose variables it uses.
 TRACES := $(P)/libtraces.so
-$(TRACES): $(addprefix $(P)/host_tests/,figures/traces.o comparison/peer_traces.o support/peers.o support/robust_peers.o support/chain.o reference/robust.o reference/robust_joint.o) $(PAPERS_OBJ)
+$(TRACES): $(addprefix $(P)/host_tests/,papers/figures/traces.o tools/comparison/peer_traces.o support/peers.o support/robust_peers.o support/chain.o reference/robust.o reference/robust_joint.o) $(PAPERS_OBJ)
 	@$(HOST_CXX) -shared $^ -lm -o $@
 
 $(P)/flight_series: $(P)/host_tests/papers/figures/flight_series.o $(addprefix $(P)/nav/tests/,reference_nav.o nav_flights.o) \
