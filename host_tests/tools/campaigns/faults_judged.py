@@ -283,7 +283,7 @@ def what_cannot_be_is_one_sentence():
                             (("--sample", "0"), "faults: --sample and --jobs want 1 or more, --pairs 0 or more")):
         status, said, errors = program("campaigns/faults/faults.py", *words)
         assert status == 1 and errors.startswith(sentence) and errors.count("\n") == 1 and "passed" not in said, (words, errors)
-    for words, sentence in ((("--hours", "nan"), "--hours wants 0.05 (in less, not every kind has its time) to 1000, not nan"),
+    for words, sentence in ((("--hours", "nan"), "--hours wants 0.1 (in less, faults overlap) to 1000, not nan"),
                             (("--hours", "0"), "not 0"),
                             (("--hours", "-3"), "not -3"), (("--hours", "1e7"), "not 1e+07"), (("--hours", "ten"), "invalid float value: 'ten'"),
                             (("--every", "nan"), "--every wants"), (("--seed", "0"), "--seed wants"),
