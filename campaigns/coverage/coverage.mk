@@ -2,8 +2,8 @@
 C := $(B)/coverage
 # the supervision of sensor and stages is judged beside lib, and the navigation image's link (campaigns/coverage/nav_lib_coverage.mk)
 SUPERVISION   := $(wildcard $(addprefix firmware/*/,sensor_watch.c health.c pipeline.c coast.c gravity.c supervisor.c))
-# without tests that run the same lines as others, only more often: they took two thirds of the time and added no line or branch. A line that is
-# reported and that one of these runs: take it off the list.
+# without tests that run the same lines as others, only more often: they took two thirds of the time and added no line or branch. When one of
+# them runs a line that is reported, take that test off the list.
 COVERAGE_SAME  := %_reference test_recording_faults test_recordings test_adaptive_roll test_streams_shipped test_filter_bursts test_tilt_filter \
                   test_nav_covariance test_nav_flight test_wokwi
 COVERAGE_SRC   := $(foreach t,$(TEST_SRC),$(if $(filter $(COVERAGE_SAME),$(basename $(notdir $(t)))),,$(t)))
